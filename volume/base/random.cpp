@@ -1,0 +1,13 @@
+#include "volume/base/random.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace pith {
+
+double Random::normal() {
+  const double radius = std::sqrt(-2 * std::log(1 - uniform()));
+  return radius * std::cos(2 * std::numbers::pi * uniform());
+}
+
+} // namespace pith

@@ -1,0 +1,49 @@
+#pragma once
+// What cuts: scalar functions of space whose zero set is the section. Below zero is the left half, above the right.
+#include "volume/base/types.h"
+#include "volume/base/view.h"
+
+#include <memory>
+#include <span>
+#include <string>
+
+namespace pith {
+
+/// A scalar function of a point, in world space (where pieces stand), mm-like units near its zero set.
+class LevelSet {
+public:
+  virtual ~LevelSet() = default;
+  virtual double value(const Vec3d& x) const = 0;
+  /// Direction of increase at x, any length; used for section normals.
+  virtual Vec3d gradient(const Vec3d& x) const = 0;
+  /// Many values at once, in parallel; result[i] belongs to points[i] and equals value(points[i]) bit for bit.
+  virtual void values(std::span<const Vec3d> points, std::span<double> result) const;
+  /// True where the function is linear, so that one linear step along an edge finds its zero.
+  virtual bool linear() const { return false; }
+};
+
+/// normal · x = offset; `normal` need not have unit length. Right (positive) is where the normal points.
+struct PlaneCut {
+  Vec3d normal{0, 0, 1};
+  double offset = 0;
+};
+/// Outside of the sphere is positive.
+struct SphereCut {
+  Vec3d center{0, 0, 0};
+  double radius = 1;
+};
+/// A freeform stroke drawn on the screen, extruded along the view (Takayama 2008, §5.1.1). Points are screen coordinates
+/// (View). Seen along the direction of drawing, the left of the stroke is negative. Beyond its ends the stroke goes on
+/// straight.
+struct StrokeCut {
+  std::vector<Vec2d> point;
+  View view;
+};
+
+/// Throws InvalidInput (`where` names the field in the message) when the shape is degenerate: a zero normal, a radius that
+/// is not positive, a stroke of fewer than two distinct points, numbers that are not finite.
+std::unique_ptr<LevelSet> level_set_of(const PlaneCut& plane, const std::string& where = "plane");
+std::unique_ptr<LevelSet> level_set_of(const SphereCut& sphere, const std::string& where = "sphere");
+std::unique_ptr<LevelSet> level_set_of(const StrokeCut& stroke, const std::string& where = "stroke");
+
+} // namespace pith

@@ -1,0 +1,35 @@
+#pragma once
+// The texture's axes in every tet: S along the depth gradient, the second axis from strokes, the third their cross
+// product (Takayama 2008, §5.2.2).
+#include "volume/field/depth.h"
+#include "volume/mesh/locate.h"
+
+#include <string>
+
+namespace pith {
+
+/// A stroke whose tangent is the texture's T axis near it: a polyline in rest space.
+struct AxisStroke {
+  std::vector<Vec3d> point;
+};
+
+struct FrameOptions {
+  double layer_width = 0.25;      ///< depth difference over which smoothing weakens (SmoothOptions)
+  double singular_sine = 0.05;    ///< below this sine between axis and gradient the frame counts as singular
+  double smallest_scale = 0;      ///< clamp of 1/|∇d|, mm; 0: a hundredth of the region's extent
+  double largest_scale = 0;       ///< mm; 0: the region's extent
+};
+
+struct FrameField {
+  PerTet<Mat3d> axes;               ///< columns R, S, T: orthonormal, right-handed
+  PerTet<float> scale;              ///< mm per texture width: 1/|∇d| clamped (§5.2.7)
+  PerTet<std::uint8_t> singular;    ///< 1 where gradient and axis are parallel or the gradient vanishes
+};
+
+/// Frames of one region for types 2-a and 2-b. Errors: InvalidInput when no stroke touches the region or when the frame is
+/// singular in every tet.
+FrameField frames_from_depth(const TetMesh& mesh, const Locator& locator, std::int32_t region, const DepthField& depth,
+                             const std::vector<AxisStroke>& strokes, const std::string& where,
+                             const FrameOptions& options = {});
+
+} // namespace pith
