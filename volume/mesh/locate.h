@@ -27,15 +27,26 @@ public:
   /// True when x lies in some closed tet of the region.
   bool contains(const Vec3d& x, std::int32_t region = -1) const;
 
+  /// The owner of x, or none when x lies in no closed tet of the region.
+  TetId owner(const Vec3d& x, std::int32_t region = -1, TetId hint = {}) const;
+
+  /// The nearest boundary facet (of a region, −1: any); its closest point and barycentrics.
+  NearestFacet nearest_facet(const Vec3d& x, std::int32_t region = -1) const {
+    return region < 0 ? facets_.nearest(x) : facets_.nearest(x, facet_region_, region);
+  }
+
 private:
   TetId lowest_owner(const Vec3d& x, std::int32_t region, TetId found, const std::array<int, 4>& sign) const;
   TetId walk(const Vec3d& x, TetId from, std::array<int, 4>& sign) const;
   TetId search_cell(const Vec3d& x, std::int32_t region) const;
+  std::uint32_t coordinate(const Vec3d& x, int axis) const;
   std::uint32_t cell_of(const Vec3d& x) const;
 
   const TetMesh& mesh_;
   const Boundary& boundary_;
   FacetTree facets_;
+  std::vector<std::int32_t> facet_region_;
+  bool several_regions_ = false;
   VertexTets around_;
   Box bounds_;
   Vec3d cells_per_mm_;

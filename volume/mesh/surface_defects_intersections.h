@@ -1,0 +1,15 @@
+#pragma once
+// Inside volume/mesh: exact tests on triangle surfaces (the door to CGAL's kernel).
+#include "volume/mesh/tri_mesh.h"
+
+namespace pith::surface {
+
+/// Whether the corners of each triangle lie on one line (exact). Positions must be finite.
+PerTriangle<char> collinear_triangles(const TriMesh& mesh);
+
+/// Which triangles meet another one anywhere but in the corner or edge that both share (exact). Triangles that are
+/// collinear, and pairs with the same three corners, are passed over. Positions must be finite.
+/// Cost: 0.1 s for 80,000 triangles of a clean surface.
+PerTriangle<char> intersecting_triangles(const TriMesh& mesh, const PerTriangle<char>& collinear);
+
+} // namespace pith::surface
