@@ -1,0 +1,198 @@
+#!/usr/bin/env bash
+# Everything that is done with a checkout of pith. `./do` alone lists the verbs.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+
+usage() {
+  cat <<'END'
+usage: ./do VERB [options]
+
+  deps                           install what pith is built with (apt, Debian 12); nothing to do when it is all there
+  build [PRESET]                 configure and build; the program is then build/release/pith
+                                 (presets: release, debug, asan, tsan; default release)
+  demo                           build, then make, cut and render the kiwi; pictures and model land in build/demo
+  test [--oracles] [--slow] [--no-sanitizers]
+                                 build and pass the tests, the fast ones under sanitizers too; also those that compare
+                                 with other programs, and those that take long
+  bench [--only REGEX] [--json FILE] [--repeat N]
+                                 build optimised, run the rows of the benchmark table whose names match, print them and
+                                 write FILE
+  format [--check]               clang-format over pith's sources; --check only says what would change
+
+deps runs by itself before build, demo, test and bench. PITH_SHARED_DATA names a folder of real meshes, images and
+volumes that some tests and benchmarks read; without it they are skipped, saying so.
+END
+}
+
+# What Debian 12 calls the tools and libraries that pith is built with.
+packages=(
+  build-essential cmake ninja-build pkg-config ccache mold git
+  libeigen3-dev libtbb-dev libfmt-dev libcli11-dev nlohmann-json3-dev libzip-dev
+  libcgal-dev libtet1.5-dev libopenvdb-dev libboost-iostreams-dev libembree-dev libopenimageio-dev
+  libglfw3-dev libepoxy-dev libimgui-dev
+  libgtest-dev libbenchmark-dev
+)
+
+fail() {
+  echo "do: $1" >&2
+  exit "${2:-1}"
+}
+step() { echo "── $*"; }
+
+# Those of the packages named that are not installed.
+missing_packages() {
+  comm -23 <(printf '%s\n' "$@" | sort) \
+    <(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "$@" 2>/dev/null | sed -n 's/^installed //p' | sort -u)
+}
+
+install_packages() {
+  if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+    command -v cmake >/dev/null && command -v ninja >/dev/null && return 0 # somebody else has set this machine up
+    fail "this is no Debian (there is no apt-get); install what these Debian packages hold, then go on: $*"
+  fi
+  local missing
+  missing=$(missing_packages "$@")
+  [[ -z $missing ]] && return 0
+
+  local release=unknown
+  [[ -r /etc/os-release ]] && release=$(. /etc/os-release && echo "${ID:-unknown} ${VERSION_ID:-}")
+  [[ $release == "debian 12" ]] || echo "do: pith is built on Debian 12, this is $release; trying all the same" >&2
+  local as_root=()
+  if [[ $(id -u) -ne 0 ]]; then
+    command -v sudo >/dev/null || fail \
+      "installing packages needs root and there is no sudo; as root, run: apt-get install ${missing//$'\n'/ }"
+    as_root=(sudo)
+  fi
+  step "installing $(wc -l <<<"$missing") packages: ${missing//$'\n'/ }"
+  local attempt
+  for attempt in 1 2 3; do
+    if "${as_root[@]}" apt-get -q -o Acquire::Retries=3 update &&
+      # shellcheck disable=SC2086
+      "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o Acquire::Retries=3 \
+        install --no-install-recommends $missing; then
+      return 0
+    fi
+    echo "do: apt-get failed (attempt $attempt of 3)" >&2
+    [[ $attempt -lt 3 ]] && sleep $((attempt * 10))
+  done
+  fail "apt-get could not install: ${missing//$'\n'/ }; see its messages above"
+}
+
+deps() { install_packages "${packages[@]}"; }
+
+# How many compilers at once: one a core, as far as memory goes (the largest file takes about 3.5 GB).
+compilers() {
+  local cores memory
+  cores=$(nproc 2>/dev/null || echo 2)
+  memory=$(awk '/MemAvailable/ { print int($2 / 2500000) }' /proc/meminfo 2>/dev/null || echo "$cores")
+  ((memory < 1)) && memory=1
+  echo $((cores < memory ? cores : memory))
+}
+
+# The folder of real data, where there is one.
+shared_data() {
+  if [[ -n ${PITH_SHARED_DATA:-} ]]; then
+    [[ -d $PITH_SHARED_DATA ]] || fail "PITH_SHARED_DATA=$PITH_SHARED_DATA is not a folder"
+    realpath "$PITH_SHARED_DATA"
+  elif [[ -d ../shared/data ]]; then
+    realpath ../shared/data
+  fi
+}
+
+configured() { # PRESET
+  local log=build/configure-$1.log data
+  data=$(shared_data)
+  mkdir -p build
+  if ! cmake --preset "$1" -DPITH_SHARED_DATA="$data" >"$log" 2>&1; then
+    cat "$log" >&2
+    fail "could not configure the $1 build"
+  fi
+}
+built() { # PRESET [TARGET...]: of a configured preset
+  local preset=$1
+  shift
+  step "building ($preset)"
+  cmake --build "build/$preset" --parallel "$(compilers)" ${1:+--target "$@"}
+}
+
+build() {
+  [[ $# -le 1 ]] || fail "build takes one preset: release, debug, asan or tsan" 2
+  case ${1:-release} in
+  release | debug | asan | tsan) ;;
+  *) fail "there is no preset '$1'; there are release, debug, asan and tsan" 2 ;;
+  esac
+  deps
+  configured "${1:-release}"
+  built "${1:-release}"
+}
+
+demo() { fail "not yet"; }
+
+# The test programs that run under the sanitizers: quick ones over the code that handles memory and files.
+sanitized=(test_base test_mesh test_field test_layer test_lap test_cut test_io)
+
+run_tests() {
+  local oracle=oracle slow=slow sanitizers=yes
+  while [[ $# -gt 0 ]]; do
+    case $1 in
+    --oracles) oracle=none ;;
+    --slow) slow=none ;;
+    --no-sanitizers) sanitizers=no ;;
+    *) fail "test knows --oracles, --slow and --no-sanitizers, not '$1'" 2 ;;
+    esac
+    shift
+  done
+  deps
+  configured release
+  built release
+  if [[ $sanitizers == yes ]]; then
+    configured asan
+    local targets=() name known
+    known=$(cmake --build build/asan --target help)
+    for name in "${sanitized[@]}"; do
+      [[ $known == *$'\n'"$name:"* ]] && targets+=("$name")
+    done
+    [[ ${#targets[@]} -gt 0 ]] || fail "there are no tests to run under sanitizers"
+    built asan "${targets[@]}"
+    step "the fast tests under the address and undefined-behaviour sanitizers"
+    local pattern
+    pattern=$(IFS='|'; echo "${targets[*]#test_}")
+    ASAN_OPTIONS=detect_leaks=1:abort_on_error=0 UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 \
+      ctest --test-dir build/asan -L "^($pattern)\$" -LE '^(oracle|slow)$' --parallel "$(compilers)" --output-on-failure \
+      --no-tests=error
+  fi
+  step "all tests"
+  ctest --test-dir build/release -LE "^($oracle|$slow)\$" --parallel "$(compilers)" --output-on-failure --no-tests=error
+}
+
+bench() {
+  local argument
+  for argument in "$@"; do [[ $argument == --help ]] && { usage; return; }; done
+  deps
+  configured release
+  built release pith pith-bench pith-bench-tetgen >&2
+  build/release/pith-bench "$@"
+}
+
+format() {
+  command -v clang-format >/dev/null || install_packages clang-format
+  local sources
+  mapfile -t sources < <(git ls-files '*.h' '*.cpp')
+  case ${1:-} in
+  "") clang-format -i "${sources[@]}" ;;
+  --check) clang-format --dry-run -Werror "${sources[@]}" ;;
+  *) fail "format knows --check, not '$1'" 2 ;;
+  esac
+}
+
+verb=${1:-help}
+[[ $# -gt 0 ]] && shift
+case $verb in
+deps | build | demo | bench | format) "$verb" "$@" ;;
+test) run_tests "$@" ;;
+help | -h | --help) usage ;;
+*)
+  usage >&2
+  fail "there is no verb '$verb'" 2
+  ;;
+esac
