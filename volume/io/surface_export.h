@@ -1,0 +1,68 @@
+#pragma once
+// The coloured surface of pieces, skin and sections, and the files that carry it: PLY, OBJ, STL, GLB. And the tets
+// themselves with their colours: VTU.
+#include "volume/base/parallel.h"
+#include "volume/cut/piece.h"
+#include "volume/layer/model.h"
+
+#include <filesystem>
+
+namespace pith {
+
+struct SurfaceOptions {
+  /// Triangles are subdivided until no edge is longer (mm), so that colours at vertices show the texture; 0: as they
+  /// are.
+  double max_edge = 0;
+  /// Guard: InvalidInput when subdivision would make more triangles than this.
+  std::size_t max_triangles = 50'000'000;
+};
+
+/// Vertices are split where a smooth surface ends: between skin and section, between sections of different cuts,
+/// between regions. Vertices of one `point` stand at the same place; over points each piece is closed.
+struct ColoredSurface {
+  std::vector<Vec3d> position; ///< of each point, world space (where the piece stands), mm
+  struct Vertex {
+    std::uint32_t point;
+    Vec3f normal; ///< unit, world space
+    Vec3f color;  ///< linear Rec.709
+  };
+  std::vector<Vertex> vertex;
+  std::vector<std::array<std::uint32_t, 3>> triangle; ///< of vertices, counter-clockwise from outside
+
+  /// Triangles and vertices stand in runs: piece by piece; in a piece the skin first, then the sections by cut.
+  struct Part {
+    std::uint32_t piece;
+    CutId cut; ///< none: the skin
+    std::uint32_t triangle_begin, triangle_end;
+    std::uint32_t vertex_begin, vertex_end;
+  };
+  std::vector<Part> part;
+};
+
+/// Colours are material_at the rest position of each vertex, on the side of the root tet behind it; skin triangles
+/// see the skin layers. Normals: the root's smooth skin, the cut's field on sections. Cost: one material_at per
+/// vertex, in parallel.
+ColoredSurface colored_surface(const Root& root, const Pieces& pieces, const SurfaceOptions& options = {},
+                               const Progress& progress = {});
+
+/// The files appear whole or not at all. Errors: IoFailure; InvalidInput for an extension that is none of the four.
+
+/// By extension: .ply, .obj, .stl or .glb.
+void write_surface(const std::filesystem::path& path, const ColoredSurface& surface,
+                   const std::string& name = "pith");
+
+/// Binary little-endian; x y z float32, nx ny nz, red green blue (8 bit, sRGB), and the piece of each face. Points
+/// are shared where their colours agree, so that a piece without a skin layer of its own is watertight by index.
+void write_ply(const std::filesystem::path& path, const ColoredSurface& surface);
+/// `v x y z r g b` (sRGB in [0, 1]), `vn`, one object per piece with groups skin, section_0, section_1 ...
+void write_obj(const std::filesystem::path& path, const ColoredSurface& surface, const std::string& name = "pith");
+/// Binary; no colour.
+void write_stl(const std::filesystem::path& path, const ColoredSurface& surface);
+/// Metres, y up (z up in millimetres becomes y up); one mesh per piece, COLOR_0 linear 16 bit.
+void write_glb(const std::filesystem::path& path, const ColoredSurface& surface, const std::string& name = "pith");
+
+/// The tets of all pieces where they stand, for ParaView: points with `color` (linear); cells with `region`,
+/// `root` (root tet), `piece` and `color` (at the barycentre). Appended raw binary.
+void write_vtu(const std::filesystem::path& path, const Root& root, const Pieces& pieces);
+
+} // namespace pith
