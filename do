@@ -51,8 +51,8 @@ install_packages() {
     fail "this is no Debian (there is no apt-get); install what these Debian packages hold, then go on: $*"
   fi
   local missing
-  missing=$(missing_packages "$@")
-  [[ -z $missing ]] && return 0
+  mapfile -t missing < <(missing_packages "$@")
+  [[ ${#missing[@]} -eq 0 ]] && return 0
 
   local release=unknown
   [[ -r /etc/os-release ]] && release=$(. /etc/os-release && echo "${ID:-unknown} ${VERSION_ID:-}")
@@ -60,22 +60,21 @@ install_packages() {
   local as_root=()
   if [[ $(id -u) -ne 0 ]]; then
     command -v sudo >/dev/null || fail \
-      "installing packages needs root and there is no sudo; as root, run: apt-get install ${missing//$'\n'/ }"
+      "installing packages needs root and there is no sudo; as root, run: apt-get install ${missing[*]}"
     as_root=(sudo)
   fi
-  step "installing $(wc -l <<<"$missing") packages: ${missing//$'\n'/ }"
+  step "installing ${#missing[@]} packages: ${missing[*]}"
   local attempt
   for attempt in 1 2 3; do
     if "${as_root[@]}" apt-get -q -o Acquire::Retries=3 update &&
-      # shellcheck disable=SC2086
       "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o Acquire::Retries=3 \
-        install --no-install-recommends $missing; then
+        install --no-install-recommends "${missing[@]}"; then
       return 0
     fi
     echo "do: apt-get failed (attempt $attempt of 3)" >&2
     [[ $attempt -lt 3 ]] && sleep $((attempt * 10))
   done
-  fail "apt-get could not install: ${missing//$'\n'/ }; see its messages above"
+  fail "apt-get could not install: ${missing[*]}; see its messages above"
 }
 
 deps() { install_packages "${packages[@]}"; }
