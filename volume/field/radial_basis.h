@@ -14,29 +14,37 @@ enum class Kernel {
 
 struct RadialBasisOptions {
   Kernel kernel = Kernel::triharmonic;
-  double smoothing = 0;      ///< added to the diagonal, in units of the scaled kernel; 0 interpolates
-  double merge = 1e-9;       ///< centres closer than this fraction of the extent are merged (their values averaged)
+  /// Added to the diagonal of the (definite) system, in units of the scaled kernel; 0 interpolates.
+  double smoothing = 0;
+  /// Centres closer than this fraction of the extent are merged: the first stays, the values are averaged.
+  double merge = 1e-9;
 };
 
-/// Σ wᵢ k(|x − cᵢ|) + a·x + b. Centres are scaled to the unit box inside, for conditioning.
+/// s(x) = Σ wᵢ k(|x − cᵢ|) + a·x + b. Centres are scaled to the unit box inside, for conditioning. The polynomial is
+/// linear along the directions in which the centres spread and constant across (all centres in one plane, on one
+/// line): such data are valid.
 class RadialBasis {
 public:
-  /// Dense solve, O(n³): 1,000 centres ~30 ms, 4,000 ~1.4 s. Throws InvalidInput when points are not finite, fewer than
-  /// one, or values differ at merged points by more than their merge radius explains; SolverFailure when the system is singular.
+  /// Dense solve, O(n³/3) on all threads, the same bits on any number of them: 500 centres ~5 ms, 1,500 ~60 ms.
+  /// Errors: InvalidInput when there is no centre, a number is not finite, or (without smoothing) values at merged
+  /// centres differ by more than a slope of 1,000 value ranges per extent across the merge radius explains;
+  /// SolverFailure when the system is singular or its residual stays above 10⁻⁶ of the values' range.
   static RadialBasis fit(std::span<const Vec3d> centers, std::span<const double> values,
                          const RadialBasisOptions& options = {});
 
   double value(const Vec3d& x) const;
-  Vec3d gradient(const Vec3d& x) const;
-  void values(std::span<const Vec3d> points, std::span<double> result) const; ///< in parallel, bit-equal to value()
-  void gradients(std::span<const Vec3d> points, std::span<Vec3d> result) const;
-  std::size_t center_count() const { return x_.size(); }
+  Vec3d gradient(const Vec3d& x) const;                                         ///< analytic, per mm
+  void values(std::span<const Vec3d> points, std::span<double> result) const;   ///< in parallel, bit-equal to value()
+  void gradients(std::span<const Vec3d> points, std::span<Vec3d> result) const; ///< bit-equal to gradient()
+  std::size_t center_count() const { return count_; }                           ///< after merging
 
 private:
   Kernel kernel_ = Kernel::triharmonic;
   Vec3d origin_ = Vec3d::Zero();
   double per_mm_ = 1;
-  std::vector<double> x_, y_, z_, weight_; ///< structure of arrays: evaluation dominates
+  std::size_t count_ = 0;
+  /// Structure of arrays (evaluation dominates), padded with zeros to a whole number of lanes.
+  std::vector<double> x_, y_, z_, weight_;
   Vec3d linear_ = Vec3d::Zero();
   double constant_ = 0;
 };
