@@ -1,0 +1,88 @@
+# Asks the compiler about one module, with the include folders that its target hands on:
+#   1. a file that includes the headers of all modules it may use compiles;
+#   2. a file that includes a header of any other module does not;
+#   3. nothing that its public headers pull in belongs to a heavy library;
+#   4. its files do not reach around the rule with relative paths.
+cmake_minimum_required(VERSION 3.25)
+set(failures "")
+
+if(IS_DIRECTORY ${SOURCE}/volume/${MODULE})
+  set(folder volume/${MODULE})
+else()
+  set(folder ${MODULE})
+endif()
+file(READ ${INCLUDES} include_dirs)
+set(flags -std=c++20)
+foreach(dir IN LISTS include_dirs)
+  if(dir MATCHES "^/usr/")
+    list(APPEND flags -isystem ${dir})
+  else()
+    list(APPEND flags -I${dir})
+  endif()
+endforeach()
+
+# header_of(module result): one header of a module, any.
+function(header_of module result)
+  file(GLOB headers RELATIVE ${SOURCE} ${SOURCE}/volume/${module}/*.h ${SOURCE}/${module}/*.h)
+  list(APPEND headers "")
+  list(GET headers 0 first)
+  set(${result} "${first}" PARENT_SCOPE)
+endfunction()
+
+# compile(name text flag code messages): what the compiler says to a file of that text. The flag -M stops after includes,
+# which is where a wrong one fails, and lists what they pulled in.
+function(compile name text flag code messages)
+  file(WRITE ${SCRATCH}/${MODULE}-${name}.cpp "${text}")
+  execute_process(COMMAND ${COMPILER} ${flags} ${flag} ${SCRATCH}/${MODULE}-${name}.cpp
+    RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE errors)
+  set(${code} ${result} PARENT_SCOPE)
+  set(${messages} "${output}${errors}" PARENT_SCOPE)
+endfunction()
+
+set(allowed "")
+foreach(other IN LISTS MODULES)
+  header_of(${other} header)
+  if(header AND other IN_LIST MAY)
+    string(APPEND allowed "#include \"${header}\"\n")
+  elseif(header)
+    compile(${other} "#include \"${header}\"\n" -M code messages)
+    if(code EQUAL 0)
+      list(APPEND failures "${MODULE} must not include ${header}, but that compiles")
+    elseif(NOT messages MATCHES "${header}: No such file")
+      list(APPEND failures "including ${header} from ${MODULE} fails for another reason: ${messages}")
+    endif()
+  endif()
+endforeach()
+compile(allowed "${allowed}" -M code messages)
+if(NOT code EQUAL 0)
+  list(APPEND failures "a file of ${MODULE} that includes what it may does not compile: ${messages}")
+endif()
+
+file(GLOB headers RELATIVE ${SOURCE} ${SOURCE}/${folder}/*.h)
+set(text "")
+foreach(header IN LISTS headers)
+  string(APPEND text "#include \"${header}\"\n")
+endforeach()
+compile(headers "${text}" -M code messages)
+if(NOT code EQUAL 0)
+  list(APPEND failures "the headers of ${folder} do not preprocess: ${messages}")
+endif()
+foreach(library CGAL tetgen.h openvdb nanovdb OpenImageIO embree3 mpi.h mpi GL GLFW epoxy imgui tbb zip.h)
+  string(REPLACE "." "\\." pattern "${library}")
+  if(messages MATCHES "[ \n](/[^ \n]*/${pattern}(/[^ \n]*)?)[ \n]")
+    list(APPEND failures "a public header of ${folder} pulls in ${CMAKE_MATCH_1}: keep it behind its door file")
+  endif()
+endforeach()
+
+file(GLOB_RECURSE files RELATIVE ${SOURCE} ${SOURCE}/${folder}/*.h ${SOURCE}/${folder}/*.cpp)
+foreach(file IN LISTS files)
+  file(STRINGS ${SOURCE}/${file} around REGEX "^ *# *include +\"(\\.\\.?/|/)")
+  if(around)
+    list(APPEND failures "${file} includes by relative path: ${around}")
+  endif()
+endforeach()
+
+if(failures)
+  list(JOIN failures "\n  " lines)
+  message(FATAL_ERROR "\n  ${lines}")
+endif()
