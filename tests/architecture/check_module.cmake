@@ -24,8 +24,10 @@ endforeach()
 # header_of(module result): one header of a module, any.
 function(header_of module result)
   file(GLOB headers RELATIVE ${SOURCE} ${SOURCE}/volume/${module}/*.h ${SOURCE}/${module}/*.h)
-  list(APPEND headers "")
-  list(GET headers 0 first)
+  set(first "")
+  if(headers)
+    list(GET headers 0 first)
+  endif()
   set(${result} "${first}" PARENT_SCOPE)
 endfunction()
 
