@@ -74,6 +74,10 @@ public:
     while (!at_line_end() && *at_ != ' ' && *at_ != '\t') ++at_;
     return {first, static_cast<std::size_t>(at_ - first)};
   }
+  /// Passes over what follows the cursor without a space.
+  void skip_attached() {
+    while (!at_line_end() && *at_ != ' ' && *at_ != '\t') ++at_;
+  }
   /// What is left of the line, without the spaces around it.
   std::string_view rest_of_line() {
     skip_spaces();

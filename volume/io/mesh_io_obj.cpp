@@ -31,7 +31,7 @@ TriMesh read_obj(std::string_view text, const std::string& name) {
         largest_line = cursor.line();
       }
       polygon.push_back(VertexId(number - 1));
-      cursor.word(); // "/texture/normal"
+      cursor.skip_attached(); // "/texture/normal"
     }
     if (polygon.size() < 3) cursor.fail("a face has " + std::to_string(polygon.size()) + " corners");
     add_fan(mesh, polygon);

@@ -2,6 +2,8 @@
 // only STL, by its format, rounds to float.
 #include "volume/io/mesh_io_formats.h"
 
+#include <Eigen/Geometry>
+
 namespace pith::mesh_format {
 namespace {
 

@@ -1,6 +1,8 @@
 // The facets where a region ends, and their surface.
 #include "volume/mesh/boundary.h"
 
+#include <Eigen/Geometry>
+
 namespace pith {
 
 Boundary boundary_of(const TetMesh& mesh) {

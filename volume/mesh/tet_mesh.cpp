@@ -3,6 +3,7 @@
 
 #include "volume/base/error.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <string>
 

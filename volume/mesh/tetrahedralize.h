@@ -28,18 +28,19 @@ struct TetrahedralizeOptions {
 };
 
 struct TetrahedralizeResult {
-  TetMesh mesh;                      ///< connected and valid; one region per closed shell
-  TriMesh surface;                   ///< the surface that was meshed: the input, or its wrap
+  TetMesh mesh;                       ///< connected and valid; one region per closed shell
+  TriMesh surface;                    ///< the surface that was meshed: the input, or its wrap
   Indexed<FacetId, TriangleId> input; ///< for each facet of boundary_of(mesh): the triangle of `surface` it came from
-  std::string method;                ///< "tetgen" or "wrap"
-  double surface_moved = 0;          ///< largest distance from the input surface to the one meshed, mm
-  std::string note;                  ///< why the fall-back was taken; empty otherwise
+  std::string method;                 ///< "tetgen" or "wrap"
+  double surface_moved = 0;           ///< largest distance from the input surface to the one meshed, mm
+  std::string note;                   ///< why the fall-back was taken; empty otherwise
 };
 
 /// Preconditions: none beyond a mesh in memory. `name` stands in messages for the surface (a file name).
 /// Errors: InvalidInput when the surface is empty, has NaN, or has no volume even after wrapping; SolverFailure when
-/// both ways fail. A crash of TetGen or CGAL's refusal becomes the fall-back, then an error; it never ends the process.
-/// Nested shells (a stone in flesh) become regions: shells are oriented by their nesting depth before meshing.
+/// both ways fail. A crash of TetGen or CGAL's refusal becomes the fall-back, then an error; it never ends the
+/// process. Nested shells (a stone in flesh) become regions: shells are oriented by their nesting depth before
+/// meshing.
 TetrahedralizeResult tetrahedralize(const TriMesh& surface, const std::string& name,
                                     const TetrahedralizeOptions& options = {}, const Progress& progress = {});
 

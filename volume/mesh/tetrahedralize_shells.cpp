@@ -1,6 +1,7 @@
 // Edges, shells and nesting of a triangle surface.
 #include "volume/mesh/tetrahedralize_shells.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -1,6 +1,7 @@
 // Measures of triangle surfaces, and welding.
 #include "volume/mesh/tri_mesh.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
 #include <numeric>

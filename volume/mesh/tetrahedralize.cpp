@@ -1,0 +1,226 @@
+// The way from a surface to tets: mend what can be mended in place, check, TetGen; else wrap, then TetGen on the
+// wrap.
+#include "volume/mesh/tetrahedralize.h"
+
+#include "volume/base/error.h"
+#include "volume/mesh/boundary.h"
+#include "volume/mesh/surface_defects_intersections.h"
+#include "volume/mesh/tetrahedralize_regions.h"
+#include "volume/mesh/tetrahedralize_tetgen.h"
+#include "volume/mesh/tetrahedralize_wrap.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace pith {
+namespace {
+
+constexpr double most_tets = 100e6;
+
+std::string short_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+void join(std::string& note, const std::string& more) {
+  if (more.empty()) return;
+  if (!note.empty()) note += "; ";
+  note += more;
+}
+
+void check_input(const TriMesh& mesh, const std::string& name, const TetrahedralizeOptions& options) {
+  if (mesh.corner.empty()) throw InvalidInput(name, "the surface has no triangles", "give a closed surface");
+  for (const TriangleId t : all_ids<TriangleId>(mesh.triangle_count()))
+    for (const VertexId v : mesh.corner[t]) {
+      if (v.value >= mesh.vertex_count())
+        throw InvalidInput(name,
+                           "triangle " + std::to_string(t) + " names vertex " + std::to_string(v) + " of " +
+                               std::to_string(mesh.vertex_count()),
+                           "export the mesh again");
+      if (!mesh.position[v].allFinite())
+        throw InvalidInput(name, "vertex " + std::to_string(v) + " is not finite", "export the mesh again");
+    }
+  const auto at_least = [&](double value, double least, const char* field) {
+    if (!(value >= least) || !std::isfinite(value))
+      throw InvalidInput(name, std::string(field) + " is " + short_number(value),
+                         "give a finite number of at least " + short_number(least));
+  };
+  at_least(options.interior_edge, 0, "interior_edge");
+  at_least(options.boundary_edge, 0, "boundary_edge");
+  at_least(options.radius_edge, 1.1, "radius_edge");
+  at_least(options.wrap_alpha, 1e-4, "wrap_alpha");
+  at_least(options.wrap_offset, 1e-5, "wrap_offset");
+  at_least(options.time_limit, 0, "time_limit");
+}
+
+double mean_edge(const TriMesh& mesh) {
+  double sum = 0;
+  for (const auto& c : mesh.corner)
+    for (int k = 0; k < 3; ++k) sum += (mesh.position[c[(k + 1) % 3]] - mesh.position[c[k]]).norm();
+  return sum / (3 * static_cast<double>(mesh.triangle_count()));
+}
+
+double area_of(const TriMesh& mesh) {
+  double sum = 0;
+  for (const auto& c : mesh.corner)
+    sum += 0.5 * (mesh.position[c[1]] - mesh.position[c[0]]).cross(mesh.position[c[2]] - mesh.position[c[0]]).norm();
+  return sum;
+}
+
+/// Tets inside a clean surface; fills `mesh` and `input` of the result. Returns why not, or nothing.
+std::string fill_clean(surface::Repaired ready, const std::string& name, const TetrahedralizeOptions& options,
+                       const Progress& progress, TetrahedralizeResult& result) {
+  if (options.boundary_edge > 0) surface::split_long_edges(ready, options.boundary_edge, name);
+  std::size_t turned = 0;
+  const surface::Regions regions = surface::outward_with_regions(ready.mesh, turned);
+  if (turned > 0)
+    join(result.note,
+         std::to_string(turned) + (turned == 1 ? " shell was" : " shells were") + " inside out and turned");
+
+  double edge = options.interior_edge;
+  if (edge == 0) edge = std::min(12 * mean_edge(ready.mesh), bounds_of(ready.mesh).diagonal() / 12);
+  tetgen::Settings settings;
+  settings.max_volume = edge * edge * edge / (6 * std::sqrt(2.0)); // of the regular tet
+  settings.radius_edge = options.radius_edge;
+  settings.time_limit = options.time_limit;
+  settings.helper = options.helper;
+  if (const double tets = std::abs(signed_volume(ready.mesh)) / settings.max_volume; tets > most_tets)
+    throw InvalidInput(name,
+                       "an interior edge of " + short_number(edge) + " mm would make " + short_number(tets) + " tets",
+                       "ask for a longer interior edge");
+
+  // First with good shapes; where that fails (or leaves a tet without volume) with the size bound alone, then plain.
+  std::string failure;
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    if (attempt == 1) settings.radius_edge = 0;
+    if (attempt == 2) settings.max_volume = 0;
+    tetgen::Outcome outcome = tetgen::run(ready.mesh, settings, progress);
+    std::string wrong = outcome.failure;
+    TetMesh mesh;
+    std::vector<TriangleId> input;
+    if (wrong.empty()) {
+      mesh.position = std::move(outcome.position);
+      mesh.corner = std::move(outcome.corner);
+      try {
+        wrong = surface::label_tets(ready.mesh, regions, mesh, input);
+      } catch (const InvalidInput& error) { // tets that overlap
+        wrong = error.what();
+      }
+    }
+    if (wrong.empty()) {
+      result.input.clear();
+      for (const TetId t : all_ids<TetId>(mesh.tet_count()))
+        for (int i = 0; i < 4; ++i) { // as boundary_of numbers the facets
+          const TetId behind = mesh.neighbor[t][i];
+          if (behind.exists() && mesh.region[behind] == mesh.region[t]) continue;
+          result.input.push_back(ready.source[input[4 * std::size_t(t) + i]]);
+        }
+      result.mesh = std::move(mesh);
+      if (attempt > 0) join(result.note, "tets are of poor shape, as TetGen could not refine them (" + failure + ")");
+      return {};
+    }
+    if (attempt == 0) failure = wrong;
+  }
+  return failure;
+}
+
+/// Material is outwards-facing in what the caller gets: triangles that were turned are turned in the copy too.
+void orient_as(const surface::Repaired& ready, TriMesh& original) {
+  for (const TriangleId t : all_ids<TriangleId>(ready.mesh.triangle_count())) {
+    const auto area = [](const TriMesh& mesh, TriangleId triangle) {
+      const auto& c = mesh.corner[triangle];
+      return Vec3d((mesh.position[c[1]] - mesh.position[c[0]]).cross(mesh.position[c[2]] - mesh.position[c[0]]));
+    };
+    const TriangleId source = ready.source[t];
+    if (area(ready.mesh, t).dot(area(original, source)) < 0)
+      std::swap(original.corner[source][1], original.corner[source][2]);
+  }
+}
+
+/// A wrap that has an inside worth the name, with a wider alpha where the surface's holes let the wrap in.
+TriMesh solid_wrap(const TriMesh& mesh, const std::string& name, const TetrahedralizeOptions& options,
+                   double& alpha_used) {
+  const double diagonal = bounds_of(mesh).diagonal(), offset = options.wrap_offset * diagonal;
+  bool any = false;
+  for (const double wider : {1.0, 2.0, 4.0, 8.0}) {
+    alpha_used = wider * options.wrap_alpha * diagonal;
+    TriMesh wrap = wrap::wrapped(mesh, alpha_used, offset);
+    if (wrap.corner.empty()) continue;
+    any = true;
+    // Around a mere sheet the wrap is a pillow 2 · offset thick: volume = offset · area.
+    if (signed_volume(wrap) > 1.5 * offset * area_of(wrap)) return wrap;
+  }
+  if (!any) throw SolverFailure(name + ": neither TetGen nor CGAL's alpha wrap can take the surface", 0);
+  throw InvalidInput(
+      name, "the surface encloses no volume, even with holes up to " + short_number(alpha_used) + " mm closed",
+      "give a closed surface");
+}
+
+void mesh_wrap(const TriMesh& mesh, const std::string& name, const std::string& reason,
+               const TetrahedralizeOptions& options, const Progress& progress, TetrahedralizeResult& result) {
+  double alpha = 0;
+  report(progress, 0.05);
+  TriMesh wrap = solid_wrap(mesh, name, options, alpha);
+  report(progress, 0.4);
+  result.surface = wrap;
+  result.method = "wrap";
+  result.surface_moved = wrap::largest_distance(mesh, wrap);
+  result.note = reason;
+  join(result.note, "wrapped instead, closing holes up to " + short_number(alpha) +
+                        " mm: the surface moved by up to " + short_number(result.surface_moved) +
+                        " mm, and no part of the new one is farther than " +
+                        short_number(wrap::largest_distance(wrap, mesh)) + " mm from the old");
+  surface::Repaired ready;
+  for (const TriangleId t : all_ids<TriangleId>(wrap.triangle_count())) ready.source.push_back(t);
+  ready.mesh = std::move(wrap);
+  const Progress rest = progress ? Progress([&](double f) { return progress(0.4 + 0.6 * f); }) : Progress();
+  const std::string failure = fill_clean(std::move(ready), name, options, rest, result);
+  if (!failure.empty())
+    throw SolverFailure(name + ": the surface cannot be filled (" + reason + "), nor can its wrap: " + failure, 0);
+}
+
+} // namespace
+
+TetrahedralizeResult tetrahedralize(const TriMesh& input, const std::string& name,
+                                    const TetrahedralizeOptions& options, const Progress& progress) {
+  check_input(input, name, options);
+  report(progress, 0);
+  const surface::Repaired ready = surface::repaired(input);
+  const PerTriangle<char> collinear = surface::collinear_triangles(ready.mesh);
+  if (std::count(collinear.begin(), collinear.end(), 1) == std::ptrdiff_t(collinear.size()))
+    throw InvalidInput(name, "all of its " + std::to_string(input.triangle_count()) + " triangles are degenerate",
+                       "give a closed surface that encloses a volume");
+
+  TetrahedralizeResult result;
+  using Method = TetrahedralizeOptions::Method;
+  if (options.method == Method::wrap) {
+    mesh_wrap(ready.mesh, name, "a wrap was asked for", options, progress, result);
+    return result;
+  }
+  SurfaceDefects defects = surface_defects(ready.mesh);
+  defects.inside_out_shells = 0; // turned below
+  defects.volume = 1;            // closed and free of self-intersections, each shell has one, whatever its sign
+  std::string reason;
+  if (defects.clean()) {
+    result.surface = input;
+    result.method = "tetgen";
+    if (!ready.note.empty()) result.note = "mended in place: " + ready.note;
+    orient_as(ready, result.surface);
+    const std::string failure = fill_clean(ready, name, options, progress, result);
+    if (failure.empty()) return result;
+    if (options.method == Method::tetgen) throw SolverFailure(name + ": " + failure, 0);
+    reason = failure;
+  } else {
+    reason = "the surface has " + defects.summary();
+    if (options.method == Method::tetgen)
+      throw InvalidInput(name, reason, "repair the surface, or allow it to be wrapped");
+  }
+  result = {};
+  mesh_wrap(ready.mesh, name, reason, options, progress, result);
+  return result;
+}
+
+} // namespace pith
