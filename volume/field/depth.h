@@ -7,29 +7,32 @@
 
 namespace pith {
 
-/// A set of places with a prescribed depth.
+/// A set of places with a prescribed depth. At least one of skin, triangles, stroke is given; several add up.
 struct DepthConstraint {
-  double value = 0;                    ///< 0 … 1
-  bool skin = false;                   ///< the whole boundary of the region
-  std::vector<TriangleId> triangles;   ///< these input triangles (multi-face and single-face fill)
-  std::vector<Vec3d> stroke;           ///< a polyline in rest space, on the surface or inside
+  double value = 0;                  ///< 0 … 1
+  bool skin = false;                 ///< the whole boundary of the region, interfaces with other regions included
+  std::vector<TriangleId> triangles; ///< these input triangles (multi-face and single-face fill)
+  std::vector<Vec3d> stroke;         ///< a polyline in rest space, on the surface or inside; one point is a point
 };
 
 struct DepthOptions {
-  int max_centers = 1500;      ///< of the radial basis; the densest constraints are thinned to it (farthest points)
-  double stroke_spacing = 0;   ///< mm between samples of a stroke; 0: its length / 40
+  /// Centres of the radial basis. Strokes take at most half of them; the densest constraints are thinned to the rest
+  /// (farthest points). More cost n³ once and n per vertex and tet.
+  int max_centers = 500;
+  double stroke_spacing = 0; ///< mm between samples of a stroke; 0: its length / 40
 };
 
 struct DepthField {
-  PerVertex<float> value;      ///< exact where constrained, clamped to [0, 1]
-  PerTet<Vec3d> gradient;      ///< 1/mm: of the smooth interpolant at the tet's barycentre
-  std::size_t centers = 0;
+  PerVertex<float> value;  ///< exact where constrained, clamped to [0, 1]; 0 at vertices of other regions
+  PerTet<Vec3d> gradient;  ///< 1/mm: of the smooth interpolant at the tet's barycentre; 0 in other regions
+  std::size_t centers = 0; ///< that the radial basis really has
 };
 
-/// Thin-plate interpolation of the constraints in 3D. Vertices of other regions keep `into`'s values. `where` names the
-/// recipe's field in messages.
-/// Errors: InvalidInput when there is no constraint, all have one value, a value lies outside [0, 1], two constraints
-/// contradict at one place, or a stroke misses the region.
+/// Thin-plate interpolation of the constraints in 3D. `where` names the recipe's field in messages.
+/// Errors: InvalidInput when the region has no tets, there is no constraint, all have one value, a value lies outside
+/// [0, 1], a constraint names no place of the region (a stroke more than a hundredth of the region's diagonal
+/// outside, a triangle that bounds no tet of it), or two constraints contradict at one place. Cost: ~0.6 ns per core
+/// pair of (vertex or tet, centre) on two cores: 4k tets ~7 ms, 1M tets ~0.4 s.
 DepthField depth_field(const TetMesh& mesh, const Boundary& boundary, std::int32_t region,
                        const std::vector<DepthConstraint>& constraints, const std::string& where,
                        const DepthOptions& options = {});

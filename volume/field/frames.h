@@ -14,22 +14,22 @@ struct AxisStroke {
 };
 
 struct FrameOptions {
-  double layer_width = 0.25;      ///< depth difference over which smoothing weakens (SmoothOptions)
-  double singular_sine = 0.05;    ///< below this sine between axis and gradient the frame counts as singular
-  double smallest_scale = 0;      ///< clamp of 1/|∇d|, mm; 0: a hundredth of the region's extent
-  double largest_scale = 0;       ///< mm; 0: the region's extent
+  double layer_width = 0.25;   ///< depth difference over which smoothing weakens (SmoothOptions)
+  double singular_sine = 0.05; ///< below this sine between axis and gradient the frame counts as singular
+  double smallest_scale = 0;   ///< clamp of 1/|∇d|, mm; 0: a hundredth of the region's extent
+  double largest_scale = 0;    ///< mm; 0: the region's extent
 };
 
 struct FrameField {
-  PerTet<Mat3d> axes;               ///< columns R, S, T: orthonormal, right-handed
-  PerTet<float> scale;              ///< mm per texture width: 1/|∇d| clamped (§5.2.7)
-  PerTet<std::uint8_t> singular;    ///< 1 where gradient and axis are parallel or the gradient vanishes
+  PerTet<Mat3d> axes;            ///< columns R, S, T: orthonormal, right-handed
+  PerTet<float> scale;           ///< mm per texture width: 1/|∇d| clamped (§5.2.7)
+  PerTet<std::uint8_t> singular; ///< 1 where gradient and axis are parallel or the gradient vanishes
 };
 
-/// Frames of one region for types 2-a and 2-b. Errors: InvalidInput when no stroke touches the region or when the frame is
-/// singular in every tet.
-FrameField frames_from_depth(const TetMesh& mesh, const Locator& locator, std::int32_t region, const DepthField& depth,
-                             const std::vector<AxisStroke>& strokes, const std::string& where,
-                             const FrameOptions& options = {});
+/// Frames of one region for types 2-a and 2-b. Errors: InvalidInput when no stroke touches the region or when the
+/// frame is singular in every tet.
+FrameField frames_from_depth(const TetMesh& mesh, const Locator& locator, std::int32_t region,
+                             const DepthField& depth, const std::vector<AxisStroke>& strokes,
+                             const std::string& where, const FrameOptions& options = {});
 
 } // namespace pith

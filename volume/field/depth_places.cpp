@@ -1,0 +1,224 @@
+// Gathers the places where depth is prescribed and refuses contradictions.
+#include "volume/field/depth_places.h"
+
+#include "volume/base/error.h"
+#include "volume/base/parallel.h"
+#include "volume/mesh/facet_tree.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace pith {
+namespace {
+
+/// Places closer than this fraction of the region's diagonal are one place.
+constexpr double same_place = 1e-6;
+/// A stroke may lie this fraction of the diagonal outside the region (drawn on a smoother surface than the mesh's).
+constexpr double stroke_margin = 0.01;
+
+std::string text_of(const Vec3d& p) {
+  std::ostringstream text;
+  text << "(" << p.x() << ", " << p.y() << ", " << p.z() << ")";
+  return text.str();
+}
+
+std::string text_of(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+std::string constraint_name(const std::string& where, std::size_t index) {
+  return where + "[" + std::to_string(index) + "]";
+}
+
+[[noreturn]] void refuse_contradiction(const std::string& where, double a, double b, const Vec3d& place) {
+  throw InvalidInput(where,
+                     "two constraints ask for depths " + text_of(a) + " and " + text_of(b) + " at " + text_of(place),
+                     "keep places of different depth apart (shorten the stroke, or choose other triangles)");
+}
+
+/// A facet whose corners are constrained as one.
+struct Held {
+  std::array<Vec3d, 3> corner;
+  double value;
+};
+
+bool meet(const Vec3d& a, const Vec3d& b, const std::array<Vec3d, 3>& t) {
+  const auto volume = [](const Vec3d& p, const Vec3d& q, const Vec3d& r, const Vec3d& s) {
+    return (q - p).cross(r - p).dot(s - p);
+  };
+  const double side_a = volume(t[0], t[1], t[2], a), side_b = volume(t[0], t[1], t[2], b);
+  if (side_a * side_b > 0 || (side_a == 0 && side_b == 0)) return false;
+  const double u = volume(a, b, t[0], t[1]), v = volume(a, b, t[1], t[2]), w = volume(a, b, t[2], t[0]);
+  return (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
+}
+
+struct Gathering {
+  const TetMesh& mesh;
+  const Boundary& boundary;
+  std::int32_t region;
+  const std::string& where;
+  double diagonal = 0;
+  DepthPlaces places;
+  std::vector<Held> held;
+
+  void hold_facet(FacetId facet, double value) {
+    Held h{.corner = {}, .value = value};
+    for (int k = 0; k < 3; ++k) {
+      const VertexId v = boundary.corner[facet][k];
+      float& prescribed = places.prescribed[v];
+      if (!std::isnan(prescribed) && prescribed != static_cast<float>(value))
+        refuse_contradiction(where, prescribed, value, mesh.position[v]);
+      prescribed = static_cast<float>(value);
+      h.corner[k] = mesh.position[v];
+    }
+    held.push_back(h);
+  }
+
+  void hold_skin(double value) {
+    for (const FacetId f : all_ids<FacetId>(boundary.facet_count()))
+      if (mesh.region[boundary.tet[f]] == region) hold_facet(f, value);
+  }
+
+  void hold_triangles(const std::vector<TriangleId>& triangles, double value, const std::string& name) {
+    if (boundary.input.empty())
+      throw InvalidInput(name, "the mesh does not know the input triangles of its facets",
+                         "use the skin or strokes for this mesh");
+    std::vector<TriangleId> wanted = triangles;
+    std::sort(wanted.begin(), wanted.end());
+    std::size_t found = 0;
+    for (const FacetId f : all_ids<FacetId>(boundary.facet_count())) {
+      if (mesh.region[boundary.tet[f]] != region) continue;
+      if (!std::binary_search(wanted.begin(), wanted.end(), boundary.input[f])) continue;
+      hold_facet(f, value);
+      ++found;
+    }
+    if (found == 0)
+      throw InvalidInput(
+          name, "none of its " + std::to_string(wanted.size()) + " triangles bounds region " + std::to_string(region),
+          "name triangles of the surface around this region");
+  }
+
+  void hold_stroke(std::span<const Vec3d> stroke, double value, double spacing, const std::string& name) {
+    for (const Vec3d& p : stroke)
+      if (!p.allFinite()) throw InvalidInput(name, "a stroke point is not finite", "give finite coordinates");
+    const double length = length_of(stroke);
+    const std::vector<PolylineSample> samples = evenly_sampled(stroke, spacing > 0 ? spacing : length / 40);
+    std::vector<Vec3d> point;
+    for (const PolylineSample& s : samples) point.push_back(s.point);
+    const std::vector<std::uint8_t> near = near_region(mesh, region, point, stroke_margin * diagonal);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < point.size(); ++i) {
+      if (!near[i]) continue;
+      ++kept;
+      places.sample.push_back(point[i]);
+      places.sample_value.push_back(value);
+    }
+    if (kept == 0)
+      throw InvalidInput(name,
+                         "the stroke from " + text_of(stroke.front()) + " to " + text_of(stroke.back()) +
+                             " misses region " + std::to_string(region),
+                         "draw it on or inside the region, in the mesh's millimetres");
+  }
+};
+
+/// A stroke must not meet a facet or a stroke of another depth.
+void check_strokes(const Gathering& gathering, const std::vector<DepthConstraint>& constraints) {
+  const double reach = same_place * gathering.diagonal;
+  for (std::size_t c = 0; c < constraints.size(); ++c) {
+    const std::vector<Vec3d>& stroke = constraints[c].stroke;
+    const double value = constraints[c].value;
+    for (std::size_t i = 0; i < stroke.size(); ++i) {
+      const Vec3d &a = stroke[i], &b = stroke[std::min(i + 1, stroke.size() - 1)];
+      Box box;
+      box.add(a);
+      box.add(b);
+      box.low.array() -= reach;
+      box.high.array() += reach;
+      for (const Held& held : gathering.held) {
+        if (held.value == value) continue;
+        Box other;
+        for (const Vec3d& p : held.corner) other.add(p);
+        if ((other.low.array() > box.high.array()).any() || (other.high.array() < box.low.array()).any()) continue;
+        if (closest_point(held.corner, a).squared_distance <= reach * reach || meet(a, b, held.corner))
+          refuse_contradiction(gathering.where, held.value, value, a);
+      }
+      for (std::size_t d = 0; d < constraints.size(); ++d) {
+        const std::vector<Vec3d>& against = constraints[d].stroke;
+        if (constraints[d].value == value) continue;
+        for (std::size_t j = 0; j < against.size(); ++j)
+          if (squared_distance(a, against[j], against[std::min(j + 1, against.size() - 1)]) <= reach * reach)
+            refuse_contradiction(gathering.where, constraints[d].value, value, a);
+      }
+    }
+  }
+}
+
+/// Vertices on a stroke take its depth too.
+void hold_vertices_on_strokes(Gathering& gathering, const std::vector<DepthConstraint>& constraints) {
+  const double reach = 1e-9 * gathering.diagonal;
+  for (const DepthConstraint& constraint : constraints) {
+    if (constraint.stroke.empty()) continue;
+    const auto& stroke = constraint.stroke;
+    Box box;
+    for (const Vec3d& p : stroke) box.add(p);
+    box.low.array() -= reach;
+    box.high.array() += reach;
+    parallel_for(gathering.mesh.vertex_count(), 4096, [&](std::size_t v) {
+      const Vec3d& x = gathering.mesh.position[VertexId(v)];
+      if (!box.contains(x)) return;
+      for (std::size_t i = 0; i < stroke.size(); ++i)
+        if (squared_distance(x, stroke[i], stroke[std::min(i + 1, stroke.size() - 1)]) <= reach * reach)
+          gathering.places.prescribed[VertexId(v)] = static_cast<float>(constraint.value);
+    });
+  }
+}
+
+} // namespace
+
+DepthPlaces depth_places(const TetMesh& mesh, const Boundary& boundary, std::int32_t region,
+                         const std::vector<DepthConstraint>& constraints, const std::string& where,
+                         const DepthOptions& options) {
+  Gathering gathering{.mesh = mesh, .boundary = boundary, .region = region, .where = where, .places = {}, .held = {}};
+  Box box;
+  for (const TetId t : all_ids<TetId>(mesh.tet_count()))
+    if (mesh.region[t] == region)
+      for (const VertexId v : mesh.corner[t]) box.add(mesh.position[v]);
+  if (box.empty())
+    throw InvalidInput(where, "the mesh has no region " + std::to_string(region),
+                       "name a region from 0 on (one per closed shell of the surface)");
+  gathering.diagonal = box.diagonal();
+  gathering.places.prescribed.assign(mesh.vertex_count(), std::numeric_limits<float>::quiet_NaN());
+
+  if (constraints.empty())
+    throw InvalidInput(where, "there is no depth constraint",
+                       "give at least two places, such as the skin with depth 0 and a stroke with depth 1");
+  for (std::size_t c = 0; c < constraints.size(); ++c) {
+    const DepthConstraint& constraint = constraints[c];
+    const std::string name = constraint_name(where, c);
+    if (!(constraint.value >= 0 && constraint.value <= 1))
+      throw InvalidInput(name, "depth " + text_of(constraint.value) + " lies outside [0, 1]",
+                         "use 0 for the outermost and 1 for the innermost part");
+    if (!constraint.skin && constraint.triangles.empty() && constraint.stroke.empty())
+      throw InvalidInput(name, "the constraint names no place", "give it the skin, triangles or a stroke");
+    if (constraint.skin) gathering.hold_skin(constraint.value);
+    if (!constraint.triangles.empty()) gathering.hold_triangles(constraint.triangles, constraint.value, name);
+    if (!constraint.stroke.empty())
+      gathering.hold_stroke(constraint.stroke, constraint.value, options.stroke_spacing, name);
+  }
+  const bool varied = std::any_of(constraints.begin(), constraints.end(),
+                                  [&](const DepthConstraint& c) { return c.value != constraints[0].value; });
+  if (!varied)
+    throw InvalidInput(where,
+                       "all " + std::to_string(constraints.size()) + " depth constraints have the value " +
+                           text_of(constraints[0].value),
+                       "give a second place another depth, such as 1 at the core");
+  check_strokes(gathering, constraints);
+  hold_vertices_on_strokes(gathering, constraints);
+  return std::move(gathering.places);
+}
+
+} // namespace pith
