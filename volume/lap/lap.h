@@ -12,8 +12,11 @@
 
 namespace pith {
 
-/// The paper's seven kinds of texture: anisotropy 0–2, variation a (none) … d (three axes). §3.
-enum class TextureType { isotropic_0, axial_1a, layered_1b, tensor_2a, tensor_2b, tensor_2c, tensor_2d };
+/// Kinds of texture by anisotropy (0–2) and variation (a: none, b: along depth), §3.
+enum class TextureType {
+  tensor_2a, ///< three different axes, the same everywhere
+  tensor_2b  ///< three different axes, changing along depth, which is the texture's second coordinate
+};
 
 /// Where and along what to paste. Spans are over all tets or vertices of the mesh; only `region` is filled.
 struct LapInput {
@@ -30,16 +33,19 @@ struct LapOptions {
   TextureType type = TextureType::tensor_2b;
   std::uint64_t seed = 1;
   SplotchOptions splotch;
-  double frame_tolerance = 1.2;    ///< largest angle between a tet's axes and the seed's, radians (§5.2.4)
-  int coverage_order = 8;          ///< samples per tet edge in the coverage test: order 8 gives the paper's 165
-  int max_rounds = 400;            ///< parallel rounds before the fill is given up
+  int mask_variants = 3;           ///< splotches of different outline for each part
+  double frame_tolerance = 1.1;    ///< largest angle between a tet's axes and the seed's, radians (§5.2.4)
+  double sample_spacing = 0.03;    ///< of the coverage test, in texture widths
+  int coverage_order = 8;          ///< most samples per tet edge in that test: order 8 gives the paper's 165 points
+  bool align = true;               ///< choose each paste's phase so that it continues what is already there; false: at random
+  int max_attempts = 12;           ///< pastes on one tet before the fill is given up
 };
 
 struct LapStatistics {
   std::size_t pastes = 0, rounds = 0;
-  std::size_t lookups = 0;           ///< after those that nothing can see were dropped
-  double median_lookups_per_tet = 0;
-  double median_share_used = 0;      ///< of a mask's opaque volume, how much lies inside the model: median over patches
+  std::size_t lookups = 0;             ///< only those that can be seen are kept
+  std::size_t warp_iterations = 0;
+  double median_share_used = 0;        ///< of a mask's alpha, the part that lies on tets of its clump: median over pastes
 };
 
 struct LapResult {
@@ -49,6 +55,8 @@ struct LapResult {
 
 /// Fills a region. The result is the same for any number of threads. Errors: InvalidInput when the exemplar does not fit
 /// the type or spans have the wrong length; SolverFailure when some tet cannot be covered; Cancelled.
+/// Departures from the paper: new pastes go beneath the older ones, so that a look-up that nothing can see is never made
+/// (the picture is as the paper's with the order reversed); the fill runs in parallel rounds.
 LapResult lap(const LapInput& input, const Exemplar& exemplar, const LapOptions& options = {},
               const Progress& progress = {});
 

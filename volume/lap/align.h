@@ -1,0 +1,21 @@
+#pragma once
+// Where in the exemplar a new paste starts, so that it continues what is already pasted: the phase along the repeating
+// axes with the least difference where both are seen. Beyond the paper, which leaves misalignment as a limitation (§7).
+#include "volume/lap/pastes.h"
+
+namespace pith {
+
+/// The exemplar at two resolutions, for comparing.
+class Aligner {
+public:
+  explicit Aligner(const Exemplar& exemplar);
+
+  /// Offsets of patch.frame along the repeating axes; `random` stands in where the paste meets nothing yet.
+  std::array<float, 4> phase(const Pastes& pastes, const Simplices& mesh, const Paste& paste,
+                             const std::array<float, 4>& random) const;
+
+private:
+  Exemplar coarse_, fine_;
+};
+
+} // namespace pith

@@ -1,0 +1,48 @@
+#pragma once
+// Growing a clump of simplices around a seed while they follow the seed's frame and lie under the mask
+// (Takayama 2008, §5.2.4; Praun 2000, §3).
+#include "volume/lap/warp.h"
+#include "volume/layer/mask.h"
+
+namespace pith {
+
+/// The frames that a paste follows.
+struct GrowField {
+  std::span<const Mat3d> axes;    ///< per simplex: unit columns, one per texture axis
+  std::span<const float> scale;   ///< per simplex: mm per texture width
+  std::span<const float> depth;   ///< per vertex: becomes coordinate 1 as it is; empty: all coordinates are solved for
+};
+
+struct GrowRule {
+  double frame_tolerance = 1.1;   ///< radians; simplices that turn further from the seed's frame are left out
+  bool through = false;           ///< take them all the same, with little confidence (singular places)
+};
+
+/// Memory that is used again from paste to paste: which simplices and vertices are in the clump.
+class GrowWorkspace {
+public:
+  void begin(std::size_t simplices, std::size_t vertices);
+  std::uint32_t local_simplex(std::uint32_t s) const { return simplex_stamp_[s] == stamp_ ? simplex_[s] : Simplices::none; }
+  std::uint32_t local_vertex(std::uint32_t v) const { return vertex_stamp_[v] == stamp_ ? vertex_[v] : Simplices::none; }
+  void set_simplex(std::uint32_t s, std::uint32_t local) { simplex_stamp_[s] = stamp_, simplex_[s] = local; }
+  void set_vertex(std::uint32_t v, std::uint32_t local) { vertex_stamp_[v] = stamp_, vertex_[v] = local; }
+
+private:
+  std::uint32_t stamp_ = 0;
+  std::vector<std::uint32_t> simplex_, vertex_, simplex_stamp_, vertex_stamp_;
+};
+
+/// A grown and warped clump.
+struct Growth {
+  Clump clump;
+  std::vector<float> weight;     ///< per clump vertex: 0 where growth stopped under the mask, else 1
+  int warp_iterations = 0;
+};
+
+/// Grows from `seed`, whose point `pin_barycentric` goes to `pin` (texture widths), warps, and grows again while the warped
+/// mask reaches past the clump (§5.2.5, last paragraph).
+Growth grow(const Simplices& mesh, const GrowField& field, const Mask& mask, std::uint32_t seed,
+            const std::array<double, 3>& pin, const std::array<float, 4>& pin_barycentric, const GrowRule& rule,
+            GrowWorkspace& workspace);
+
+} // namespace pith

@@ -1,0 +1,232 @@
+// Takayama, Okabe, Ijiri, Igarashi: Lapped Solid Textures (SIGGRAPH 2008), §5.2.
+//
+// Order of work: masks (§5.2.1) → rounds of { seeds (§5.2.3) → grow and warp (§5.2.4, §5.2.5; depth as coordinate §5.2.7) →
+// coverage (§5.2.6) } until no tet is open. Departures: newer pastes lie beneath older ones; seeds are chosen by a hash of
+// their place instead of a running random number, in rounds of seeds that keep apart, so that the fill runs in parallel
+// and a local edit changes it locally; the seed's point is one that is still open instead of the barycentre.
+#include "volume/lap/lap.h"
+
+#include "volume/base/error.h"
+#include "volume/base/random.h"
+#include "volume/lap/align.h"
+#include "volume/lap/pastes.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace pith {
+
+namespace {
+
+constexpr std::uint64_t stage = 0x1a9; // of random numbers
+
+void check(const LapInput& input, const Exemplar& exemplar, const LapOptions& options) {
+  const std::size_t tets = input.mesh.tet_count();
+  if (input.axes.size() != tets || input.scale.size() != tets)
+    throw InvalidInput("fill", "was given frames for " + std::to_string(input.axes.size()) + " of " + std::to_string(tets) +
+                                   " tets",
+                       "make frames for the whole mesh first");
+  validate(exemplar);
+  const std::string where = "exemplar '" + exemplar.name + "'";
+  if (exemplar.axes != 3) throw InvalidInput(where, "is not a volume", "a solid is filled from a volume of 3 axes");
+  for (int axis : {0, 2})
+    if (exemplar.wrap[axis] != Wrap::repeat)
+      throw InvalidInput(where, "does not repeat along axis " + std::to_string(axis),
+                         "types 2-a and 2-b need wrap 'repeat' along axes 0 and 2");
+  if (options.type == TextureType::tensor_2b && input.depth.size() != input.mesh.vertex_count())
+    throw InvalidInput("fill", "has no depth field", "give the region depth constraints, or choose type 2-a");
+  if (options.type == TextureType::tensor_2a && exemplar.wrap[1] != Wrap::repeat)
+    throw InvalidInput(where, "does not repeat along axis 1", "type 2-a needs wrap 'repeat' along all axes");
+}
+
+/// Outer, middle and inner masks (Fig. 14), or whole ones, each in a few variants.
+std::vector<Mask> masks_of(const LapOptions& options) {
+  std::vector<Mask> masks;
+  const auto add = [&](SplotchPart part) {
+    for (int variant = 0; variant < options.mask_variants; ++variant) {
+      SplotchOptions splotch = options.splotch;
+      splotch.axes = 3;
+      splotch.variation_axis = 1;
+      splotch.seed = hash_of(options.seed, stage, variant, splotch.seed);
+      masks.push_back(splotch_mask(splotch, part));
+    }
+  };
+  if (options.type == TextureType::tensor_2b) {
+    for (SplotchPart part : {SplotchPart::outer, SplotchPart::middle, SplotchPart::inner}) add(part);
+  } else {
+    add(SplotchPart::whole);
+  }
+  return masks;
+}
+
+/// A seed's priority: a hash of where it is.
+std::uint64_t priority_of(const Vec3d& place, std::uint64_t seed) {
+  return hash_of(seed, stage, std::bit_cast<std::uint64_t>(place.x()), std::bit_cast<std::uint64_t>(place.y()),
+                 std::bit_cast<std::uint64_t>(place.z()));
+}
+
+class Filler {
+public:
+  Filler(const LapInput& input, const Exemplar& exemplar, const LapOptions& options)
+      : input_(input), options_(options), mesh_(simplices_of(input.mesh, input.region)),
+        pastes_(mesh_, coverage(), masks_of(options)), aligner_(exemplar), attempts_(mesh_.count, 0),
+        workspace_(most_seeds) {
+    field_ = {input.axes, input.scale, {}};
+    if (options.type == TextureType::tensor_2b) field_.depth = input.depth;
+    for (std::uint32_t s = 0; s < mesh_.count; ++s)
+      if (pastes_.coverage().open(s)) queue_.push_back(s);
+    std::vector<std::uint64_t> priority(mesh_.count);
+    for (std::uint32_t s : queue_) priority[s] = priority_of(mesh_.center[s], options.seed);
+    std::sort(queue_.begin(), queue_.end(),
+              [&](auto a, auto b) { return std::pair(priority[a], a) < std::pair(priority[b], b); });
+  }
+
+  LapResult run(const Progress& progress) {
+    const double all = static_cast<double>(std::max<std::size_t>(1, queue_.size()));
+    while (pastes_.coverage().open_count() > 0) {
+      report(progress, 1 - pastes_.coverage().open_count() / all);
+      paste(next_seeds());
+      ++statistics_.rounds;
+    }
+    report(progress, 1);
+    LapResult result;
+    statistics_.pastes = pastes_.count();
+    result.layer = pastes_.take_layer();
+    result.layer.region = input_.region;
+    statistics_.lookups = result.layer.lookup.size();
+    if (!shares_.empty()) {
+      std::nth_element(shares_.begin(), shares_.begin() + shares_.size() / 2, shares_.end());
+      statistics_.median_share_used = shares_[shares_.size() / 2];
+    }
+    result.statistics = statistics_;
+    return result;
+  }
+
+private:
+  static constexpr std::size_t most_seeds = 16; ///< in one round; fixed, so that the result is
+
+  Coverage coverage() const {
+    std::vector<float> size(mesh_.count, -1.0f);
+    parallel_for(mesh_.count, 4096, [&](std::size_t s) {
+      if (!(mesh_.measure[s] > 0)) return;
+      double longest = 0;
+      for (int i = 0; i < mesh_.corners; ++i)
+        for (int j = 0; j < i; ++j)
+          longest = std::max(longest, (mesh_.position[mesh_.corner[s * mesh_.corners + i]] -
+                                       mesh_.position[mesh_.corner[s * mesh_.corners + j]])
+                                          .norm());
+      size[s] = static_cast<float>(longest / input_.scale[s]);
+    });
+    return Coverage(mesh_.corners, size, options_.sample_spacing, options_.coverage_order);
+  }
+
+  /// Open simplices in order of priority that keep a texture width from one another (§5.2.3).
+  std::vector<std::uint32_t> next_seeds() {
+    std::erase_if(queue_, [&](std::uint32_t s) { return !pastes_.coverage().open(s); });
+    std::vector<std::uint32_t> seeds;
+    for (std::size_t i = 0; i < queue_.size() && i < 4096 && seeds.size() < most_seeds; ++i) {
+      const std::uint32_t s = queue_[i];
+      const bool apart = std::all_of(seeds.begin(), seeds.end(), [&](std::uint32_t other) {
+        const double reach = 0.6 * (input_.scale[s] + input_.scale[other]);
+        return (mesh_.center[s] - mesh_.center[other]).squaredNorm() > reach * reach;
+      });
+      if (apart) seeds.push_back(s);
+    }
+    return seeds;
+  }
+
+  void paste(const std::vector<std::uint32_t>& seeds) {
+    std::vector<Paste> pastes(seeds.size());
+    parallel_for(seeds.size(), 1, [&](std::size_t i) { pastes[i] = grown(seeds[i], workspace_[i]); });
+    for (std::size_t i = 0; i < seeds.size(); ++i) {
+      const std::size_t before = pastes_.count();
+      pastes_.commit(pastes[i]);
+      statistics_.warp_iterations += pastes[i].growth.warp_iterations;
+      if (pastes_.count() > before) shares_.push_back(pastes[i].share_used);
+      if (pastes_.coverage().open(seeds[i]) && ++attempts_[seeds[i]] > options_.max_attempts) {
+        const Vec3d& at = mesh_.center[seeds[i]];
+        throw SolverFailure("fill: the tet near (" + std::to_string(at.x()) + ", " + std::to_string(at.y()) + ", " +
+                                std::to_string(at.z()) + ") stays uncovered after " + std::to_string(attempts_[seeds[i]]) +
+                                " pastes; make the tets smaller than the texture (tetrahedralize/interior_edge)",
+                            *std::max_element(pastes_.coverage().shining(seeds[i]).begin(),
+                                              pastes_.coverage().shining(seeds[i]).end()));
+      }
+    }
+  }
+
+  Paste grown(std::uint32_t seed, GrowWorkspace& workspace) const {
+    Paste paste;
+    paste.patch.key = hash_of(priority_of(mesh_.center[seed], options_.seed), attempts_[seed]);
+    const std::array<float, 4> at = open_point(seed);
+    std::array<double, 3> pin{0.5, 0.5, 0.5};
+    int part = 0;
+    if (!field_.depth.empty()) {
+      pin[1] = 0; // (½, d_seed, ½), §5.2.7
+      for (int i = 0; i < 4; ++i) pin[1] += at[i] * field_.depth[mesh_.corner[4 * std::size_t(seed) + i]];
+      part = pin[1] < 0.25 ? 0 : pin[1] > 0.75 ? 2 : 1;
+    }
+    Random random(paste.patch.key);
+    paste.patch.mask = part * options_.mask_variants + random.below(options_.mask_variants);
+
+    // A seed that its paste failed to cover is tried again with more freedom: first a wider tolerance, then none.
+    GrowRule rule;
+    rule.frame_tolerance = options_.frame_tolerance * (attempts_[seed] > 0 ? 1.5 : 1);
+    rule.through = attempts_[seed] > 1;
+    paste.growth = grow(mesh_, field_, pastes_.masks()[paste.patch.mask], seed, pin, at, rule, workspace);
+    pastes_.look(paste);
+    std::array<float, 4> phase{};
+    phase[0] = static_cast<float>(random.uniform());
+    phase[2] = static_cast<float>(random.uniform());
+    if (field_.depth.empty()) phase[1] = static_cast<float>(random.uniform());
+    paste.patch.frame.offset = options_.align ? aligner_.phase(pastes_, mesh_, paste, phase) : phase;
+    return paste;
+  }
+
+  /// Barycentrics of an open sample near the middle of what is open of a simplex.
+  std::array<float, 4> open_point(std::uint32_t s) const {
+    const auto samples = pastes_.coverage().samples(s);
+    const auto shining = pastes_.coverage().shining(s);
+    std::array<float, 4> mean{};
+    float sum = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (shining[i] <= 1 / 255.0f) continue;
+      for (int k = 0; k < 4; ++k) mean[k] += shining[i] * samples[i][k];
+      sum += shining[i];
+    }
+    for (float& m : mean) m /= sum;
+    float nearest = std::numeric_limits<float>::infinity();
+    std::array<float, 4> point = mean;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (shining[i] <= 1 / 255.0f) continue;
+      float squared = 0;
+      for (int k = 0; k < 4; ++k) squared += (samples[i][k] - mean[k]) * (samples[i][k] - mean[k]);
+      if (squared < nearest) nearest = squared, point = samples[i];
+    }
+    return point;
+  }
+
+  const LapInput& input_;
+  const LapOptions& options_;
+  Simplices mesh_;
+  Pastes pastes_;
+  Aligner aligner_;
+  GrowField field_;
+  std::vector<std::uint32_t> queue_;
+  std::vector<int> attempts_;
+  std::vector<GrowWorkspace> workspace_;
+  std::vector<float> shares_;
+  LapStatistics statistics_;
+};
+
+} // namespace
+
+LapResult lap(const LapInput& input, const Exemplar& exemplar, const LapOptions& options, const Progress& progress) {
+  check(input, exemplar, options);
+  LapResult result = Filler(input, exemplar, options).run(progress);
+  result.layer.name = exemplar.name;
+  result.layer.exemplar.push_back(exemplar);
+  return result;
+}
+
+} // namespace pith

@@ -1,0 +1,288 @@
+// The blend rules of all five methods (docs/design.md, idea 1): paste order (Praun 2000, Takayama 2008), weighted
+// (Ray 2009, §4.3), selection by effective height (Schuster 2020, §3.4.2) and histogram preservation (Heitz, Neyret 2018).
+#include "volume/layer/composite.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace pith {
+
+LayerReader::LayerReader(const Layer& l, bool mips) : layer(&l), components(l.exemplar.front().component_count()) {
+  coarser.resize(l.exemplar.size());
+  for (std::size_t i = 0; i < l.exemplar.size(); ++i) {
+    const Exemplar* level = &l.exemplar[i];
+    while (mips && std::max({level->size[0], level->size[1], level->size[2], level->size[3]}) > 2) {
+      coarser[i].reserve(16);
+      coarser[i].push_back(half_size(*level));
+      level = &coarser[i].back();
+    }
+    Source s;
+    const auto add = [&](const Exemplar& e) {
+      s.level.push_back(texel_grid(e, e.texel));
+      if (!e.gaussian.empty()) s.gaussian.push_back(texel_grid(e, e.gaussian));
+    };
+    add(l.exemplar[i]);
+    for (const Exemplar& e : coarser[i]) add(e);
+    s.decode = decode_table(l.exemplar[i]);
+    source.push_back(std::move(s));
+  }
+  int component = 0;
+  for (const Channel& c : l.exemplar.front().channel) {
+    if (c.semantic == Semantic::height && height_component < 0) height_component = component;
+    has_directions |= c.semantic == Semantic::direction || c.semantic == Semantic::normal;
+    component += c.components;
+  }
+  std::array<float, 256> deviations;
+  for (int byte = 0; byte < 256; ++byte) deviations[byte] = (byte / 255.0f - 0.5f) * 6;
+  gaussian_decode.assign(components, deviations);
+}
+
+namespace {
+
+/// A look-up at the point: its coordinates in the patch's unit cube and its masked weight.
+struct Sight {
+  std::array<float, 5> w; ///< coordinates, then the interpolated corner weight
+  float alpha;
+};
+
+inline Sight sight_of(const Layer& layer, const Lookup& lookup, const std::array<float, 4>& b) {
+  Sight s;
+  const int stride = layer.width + 1;
+  const float* rows[4] = {layer.corner.data() + std::size_t(lookup.corner[0]) * stride,
+                          layer.corner.data() + std::size_t(lookup.corner[1]) * stride,
+                          layer.corner.data() + std::size_t(lookup.corner[2]) * stride, nullptr};
+  const bool solid = layer.domain == Domain::solid;
+  rows[3] = solid ? layer.corner.data() + std::size_t(lookup.corner[3]) * stride : rows[2];
+  const float last = solid ? b[3] : 0.0f;
+  for (int k = 0; k < stride; ++k)
+    s.w[k] = (b[0] * rows[0][k] + b[1] * rows[1][k]) + (b[2] * rows[2][k] + last * rows[3][k]);
+  s.alpha = s.w[layer.width];
+  if (s.alpha > 0) {
+    const Patch& patch = layer.patch[lookup.patch];
+    if (patch.mask != Patch::no_mask) s.alpha *= layer.mask[patch.mask].value(s.w.data());
+  }
+  return s;
+}
+
+/// Rows: gradients (1/mm) of the exemplar coordinates over rest space.
+using Jacobian = Eigen::Matrix<double, 4, 3>;
+
+Jacobian jacobian_of(const Layer& layer, const Lookup& lookup, const SimplexPoint& point) {
+  const int stride = layer.width + 1, corners = layer.domain == Domain::solid ? 4 : 3;
+  Jacobian j = Jacobian::Zero();
+  for (int i = 0; i < corners; ++i) {
+    const float* row = layer.corner.data() + std::size_t(lookup.corner[i]) * stride;
+    for (int k = 0; k < layer.width; ++k) j.row(k) += row[k] * point.gradient[i].transpose();
+  }
+  const AxisMap& frame = layer.patch[lookup.patch].frame;
+  for (int k = 0; k < layer.width; ++k) j.row(k) *= double(frame.scale[k]) * layer.evaluation.scale[k];
+  return j;
+}
+
+/// Carries directions and normals from texture space to rest space; leaves other channels alone.
+void carry_directions(const LayerReader& reader, const Jacobian& j, const SimplexPoint& point, float* value) {
+  Mat3d map = j.topRows<3>();
+  if (reader.layer->domain == Domain::skin)
+    map.row(2) = 0.5 * (j.row(0).norm() + j.row(1).norm()) * point.normal.transpose();
+  int component = 0;
+  for (const Channel& c : reader.layer->exemplar.front().channel) {
+    if (c.semantic == Semantic::direction || c.semantic == Semantic::normal) {
+      const Vec3d texture(value[component], value[component + 1], value[component + 2]);
+      Vec3d rest = Vec3d::Zero();
+      if (c.semantic == Semantic::normal) {
+        rest = map.transpose() * texture;
+      } else if (std::abs(map.determinant()) > 1e-300) {
+        rest = map.inverse() * texture;
+      }
+      const double length = rest.norm();
+      if (length > 0) rest /= length;
+      for (int i = 0; i < 3; ++i) value[component + i] = static_cast<float>(rest[i]);
+    }
+    component += c.components;
+  }
+}
+
+/// The exemplar's values at a sight: frame, evaluation, mip level, and directions in rest space.
+void read_exemplar(const LayerReader& reader, const Lookup& lookup, const Sight& sight, const SimplexPoint& point,
+                   bool gaussian, float* value) {
+  const Layer& layer = *reader.layer;
+  const Patch& patch = layer.patch[lookup.patch];
+  const LayerReader::Source& source = reader.source[patch.exemplar];
+  std::array<float, 4> u{};
+  for (int k = 0; k < layer.width; ++k) {
+    const float framed = patch.frame.scale[k] * sight.w[k] + patch.frame.offset[k];
+    u[k] = layer.evaluation.scale[k] * framed + layer.evaluation.offset[k];
+  }
+  const std::vector<TexelGrid>& levels = gaussian ? source.gaussian : source.level;
+  const DecodeTable& decode = gaussian ? reader.gaussian_decode : source.decode;
+  const bool carry = reader.has_directions && !gaussian;
+  if (point.footprint <= 0 && !carry) return sample(levels[0], decode, u.data(), value);
+
+  const Jacobian j = jacobian_of(layer, lookup, point);
+  double level = 0;
+  if (point.footprint > 0) {
+    double texels = 1;
+    for (int k = 0; k < layer.width; ++k)
+      texels = std::max(texels, j.row(k).norm() * layer.exemplar[patch.exemplar].size[k] * point.footprint);
+    level = std::min(std::log2(texels), static_cast<double>(levels.size() - 1));
+  }
+  const std::size_t fine = static_cast<std::size_t>(level);
+  sample(levels[fine], decode, u.data(), value);
+  if (const float blend = static_cast<float>(level - fine); blend > 0) {
+    std::array<float, max_components> coarse;
+    sample(levels[fine + 1], decode, u.data(), coarse.data());
+    for (int c = 0; c < reader.components; ++c) value[c] += blend * (coarse[c] - value[c]);
+  }
+  if (carry) carry_directions(reader, j, point, value);
+}
+
+constexpr float opaque = 0.999f; ///< what lies below shows through by less than a quarter of an 8-bit step
+
+LayerValue composite_over(const LayerReader& reader, std::span<const Lookup> lookups, const SimplexPoint& point) {
+  LayerValue result;
+  std::array<float, max_components> value;
+  for (std::size_t i = lookups.size(); i-- > 0;) {
+    const Sight sight = sight_of(*reader.layer, lookups[i], point.barycentric);
+    if (!(sight.alpha > 0)) continue;
+    read_exemplar(reader, lookups[i], sight, point, false, value.data());
+    ++result.lookups_read;
+    const float shown = (1 - result.coverage) * std::min(sight.alpha, 1.0f);
+    for (int c = 0; c < reader.components; ++c) result.value[c] += shown * value[c];
+    result.coverage += shown;
+    if (result.coverage >= opaque) break;
+  }
+  return result;
+}
+
+/// The look-ups with positive weight: the largest `max_weighted_lookups`, in paste order.
+struct Weighted {
+  std::array<Sight, max_weighted_lookups> sight;
+  std::array<const Lookup*, max_weighted_lookups> lookup;
+  std::array<float, max_weighted_lookups> weight;
+  int count = 0;
+};
+
+Weighted weighted_lookups(const LayerReader& reader, std::span<const Lookup> lookups, const SimplexPoint& point) {
+  Weighted kept;
+  float total = 0;
+  for (const Lookup& lookup : lookups) {
+    const Sight sight = sight_of(*reader.layer, lookup, point.barycentric);
+    if (!(sight.alpha > 0)) continue;
+    total += sight.alpha;
+    int slot = kept.count;
+    if (kept.count == max_weighted_lookups) {
+      slot = static_cast<int>(std::min_element(kept.weight.begin(), kept.weight.end()) - kept.weight.begin());
+      if (kept.weight[slot] >= sight.alpha) continue;
+      for (int i = slot; i + 1 < kept.count; ++i) { // keep paste order
+        kept.sight[i] = kept.sight[i + 1];
+        kept.lookup[i] = kept.lookup[i + 1];
+        kept.weight[i] = kept.weight[i + 1];
+      }
+      slot = kept.count - 1;
+    } else {
+      ++kept.count;
+    }
+    kept.sight[slot] = sight;
+    kept.lookup[slot] = &lookup;
+    kept.weight[slot] = sight.alpha;
+  }
+  float sum = 0;
+  for (int i = 0; i < kept.count; ++i) sum += kept.weight[i];
+  if (sum > 0 && sum < total) // some were dropped: the rest stand for the whole
+    for (int i = 0; i < kept.count; ++i) kept.weight[i] *= total / sum;
+  return kept;
+}
+
+/// Schuster 2020, §3.4.2 and §3.5: effective heights w·h or w·(1 − h); those within the grace of the largest stay, with
+/// weight (h_e − max(0, h_e,max − Δh)) / Δh.
+void select_by_height(const LayerReader& reader, const Blend& blend, Weighted& kept,
+                      const std::array<std::array<float, max_components>, max_weighted_lookups>& value) {
+  float largest = 0;
+  std::array<float, max_weighted_lookups> effective{};
+  for (int i = 0; i < kept.count; ++i) {
+    const float height = value[i][reader.height_component];
+    effective[i] = kept.weight[i] * (blend.select == Blend::Select::max ? height : 1 - height);
+    largest = std::max(largest, effective[i]);
+  }
+  if (!(largest > 0)) return; // no height anywhere: plain weights decide
+  const float floor = std::max(0.0f, largest - blend.grace);
+  for (int i = 0; i < kept.count; ++i) kept.weight[i] = std::max(0.0f, effective[i] - floor) / blend.grace;
+}
+
+LayerValue composite_weights(const LayerReader& reader, std::span<const Lookup> lookups, const SimplexPoint& point) {
+  const Blend& blend = reader.layer->blend;
+  Weighted kept = weighted_lookups(reader, lookups, point);
+  LayerValue result;
+  if (kept.count == 0) return result;
+
+  const bool histogram = blend.mix == Blend::Mix::histogram;
+  std::array<std::array<float, max_components>, max_weighted_lookups> value;
+  if (!histogram || blend.select != Blend::Select::none || reader.has_directions)
+    for (int i = 0; i < kept.count; ++i)
+      read_exemplar(reader, *kept.lookup[i], kept.sight[i], point, false, value[i].data());
+  float sum = 0;
+  for (int i = 0; i < kept.count; ++i) sum += kept.weight[i];
+  const float coverage = blend.mix == Blend::Mix::weighted ? std::min(1.0f, sum) : 1.0f;
+  if (blend.select != Blend::Select::none) {
+    select_by_height(reader, blend, kept, value);
+    sum = 0;
+    for (int i = 0; i < kept.count; ++i) sum += kept.weight[i];
+  }
+  std::array<float, max_components> mean{};
+  if (!histogram || reader.has_directions)
+    for (int i = 0; i < kept.count; ++i)
+      for (int c = 0; c < reader.components; ++c) mean[c] += kept.weight[i] / sum * value[i][c];
+  if (histogram) {
+    float squares = 0;
+    for (int i = 0; i < kept.count; ++i) squares += kept.weight[i] / sum * (kept.weight[i] / sum);
+    const float gain = 1 / std::sqrt(squares);
+    std::array<float, max_components> gaussian{}, one;
+    for (int i = 0; i < kept.count; ++i) {
+      read_exemplar(reader, *kept.lookup[i], kept.sight[i], point, true, one.data());
+      for (int c = 0; c < reader.components; ++c) gaussian[c] += gain * kept.weight[i] / sum * one[c];
+    }
+    // Back through the first exemplar's inverse table, linearly between its entries; directions keep their mean.
+    const Exemplar& exemplar = reader.layer->exemplar[reader.layer->patch[kept.lookup[0]->patch].exemplar];
+    int component = 0;
+    for (const Channel& channel : exemplar.channel)
+      for (int k = 0; k < channel.components; ++k, ++component) {
+        if (channel.semantic == Semantic::direction || channel.semantic == Semantic::normal) continue;
+        const float byte = std::clamp((gaussian[component] / 6 + 0.5f) * 255, 0.0f, 255.0f);
+        const int low = std::min(254, static_cast<int>(byte));
+        const float* table = exemplar.inverse.data() + component * 256;
+        mean[component] = table[low] + (byte - low) * (table[low + 1] - table[low]);
+      }
+  }
+  for (int c = 0; c < reader.components; ++c) result.value[c] = coverage * mean[c];
+  result.coverage = coverage;
+  result.lookups_read = kept.count;
+  return result;
+}
+
+} // namespace
+
+LayerValue composite(const LayerReader& reader, std::span<const Lookup> lookups, const SimplexPoint& point) {
+  return reader.layer->blend.mix == Blend::Mix::over ? composite_over(reader, lookups, point)
+                                                     : composite_weights(reader, lookups, point);
+}
+
+LayerCoverage coverage_of(const LayerReader& reader, std::span<const Lookup> lookups, const SimplexPoint& point) {
+  LayerCoverage result;
+  float sum = 0, shown_through = 1;
+  for (const Lookup& lookup : lookups) {
+    const float alpha = sight_of(*reader.layer, lookup, point.barycentric).alpha;
+    if (!(alpha > 0)) continue;
+    ++result.visible;
+    sum += alpha;
+    shown_through *= 1 - std::min(alpha, 1.0f);
+  }
+  switch (reader.layer->blend.mix) {
+  case Blend::Mix::over: result.coverage = 1 - shown_through; break;
+  case Blend::Mix::weighted: result.coverage = std::min(1.0f, sum); break;
+  default: result.coverage = sum > 0 ? 1.0f : 0.0f;
+  }
+  return result;
+}
+
+} // namespace pith

@@ -1,0 +1,59 @@
+#pragma once
+// The one compositor: the look-ups of one layer on one simplex become one value, by the layer's blend rule.
+#include "volume/layer/layer.h"
+#include "volume/layer/sample.h"
+
+#include <span>
+
+namespace pith {
+
+/// A layer with what is needed to read it fast: grids for every mip level, decoding tables. Refers to the layer.
+struct LayerReader {
+  explicit LayerReader(const Layer& layer, bool mips);
+
+  struct Source {
+    std::vector<TexelGrid> level;    ///< finest first
+    std::vector<TexelGrid> gaussian; ///< the twins, same levels; empty without
+    DecodeTable decode;
+  };
+  const Layer* layer;
+  std::vector<Source> source;                    ///< per exemplar
+  std::vector<std::vector<Exemplar>> coarser;    ///< per exemplar, the mips that `level` points into
+  DecodeTable gaussian_decode;                   ///< bytes of a twin → standard deviations
+  int components = 0;
+  int height_component = -1;                     ///< of the first height channel
+  bool has_directions = false;
+};
+
+/// A place on one simplex: a tet (4 corners) or a boundary facet (3).
+struct SimplexPoint {
+  std::array<float, 4> barycentric{}; ///< the fourth is 0 on a facet
+  /// Gradients (1/mm) of the barycentric coordinates; on a facet tangent to it. Needed only for directions and
+  /// footprints.
+  std::array<Vec3d, 4> gradient{};
+  Vec3d normal = Vec3d::Zero();       ///< unit, of a facet
+  double footprint = 0;               ///< mm
+};
+
+struct LayerValue {
+  std::array<float, max_components> value{}; ///< multiplied by coverage
+  float coverage = 0;
+  int lookups_read = 0;
+};
+
+/// True when compositing this layer needs SimplexPoint's gradients.
+inline bool needs_gradient(const LayerReader& reader, double footprint) {
+  return reader.has_directions || footprint > 0;
+}
+
+/// The value of a row of look-ups (a simplex's, in paste order).
+LayerValue composite(const LayerReader& reader, std::span<const Lookup> lookups, const SimplexPoint& point);
+
+/// Coverage alone, and how many look-ups have a positive masked weight: for the measures of a fill.
+struct LayerCoverage {
+  float coverage = 0;
+  int visible = 0;
+};
+LayerCoverage coverage_of(const LayerReader& reader, std::span<const Lookup> lookups, const SimplexPoint& point);
+
+} // namespace pith

@@ -1,0 +1,107 @@
+#include "volume/layer/composite.h"
+#include "volume/layer/tables.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pith {
+
+namespace {
+
+std::span<const Lookup> row_of(const Layer& layer, std::uint32_t simplex) {
+  std::size_t row = simplex;
+  if (!layer.simplex.empty()) {
+    const auto at = std::lower_bound(layer.simplex.begin(), layer.simplex.end(), simplex);
+    if (at == layer.simplex.end() || *at != simplex) return {};
+    row = at - layer.simplex.begin();
+  }
+  return {layer.lookup.data() + layer.begin[row], layer.lookup.data() + layer.begin[row + 1]};
+}
+
+/// Gradients of a tet's barycentric coordinates: inward facet normals over three times the volume.
+std::array<Vec3d, 4> barycentric_gradients(const TetMesh& mesh, TetId tet) {
+  std::array<Vec3d, 4> gradient;
+  const auto& c = mesh.corner[tet];
+  for (int i = 0; i < 4; ++i) {
+    const auto& f = facet_corners[i];
+    const Vec3d& a = mesh.position[c[f[0]]];
+    const Vec3d inward = (mesh.position[c[f[2]]] - a).cross(mesh.position[c[f[1]]] - a);
+    gradient[i] = inward / inward.dot(mesh.position[c[i]] - a);
+  }
+  return gradient;
+}
+
+/// The point of a facet nearest to x, with tangent gradients where they are needed.
+SimplexPoint point_on_facet(const Model& model, FacetId facet, const Vec3d& x) {
+  std::array<Vec3d, 3> p;
+  for (int i = 0; i < 3; ++i) p[i] = model.mesh.position[model.boundary.corner[facet][i]];
+  const NearestFacet nearest = closest_point(p, x);
+  SimplexPoint point;
+  for (int i = 0; i < 3; ++i) point.barycentric[i] = static_cast<float>(nearest.barycentric[i]);
+  const Vec3d area = (p[1] - p[0]).cross(p[2] - p[0]);
+  const double squared = area.squaredNorm();
+  point.normal = area / std::sqrt(squared);
+  for (int i = 0; i < 3; ++i) point.gradient[i] = area.cross(p[(i + 2) % 3] - p[(i + 1) % 3]) / squared;
+  return point;
+}
+
+} // namespace
+
+Material material_at(const Root& root, const MaterialPoint& point, double footprint) {
+  TetId hint = point.hint;
+  if (!hint.exists() && point.facet.exists()) hint = root.model().boundary.tet[point.facet];
+  return material_at(root, point, root.locator().locate(point.position, point.region, hint), footprint);
+}
+
+Material material_at(const Root& root, const MaterialPoint& point, const Location& location, double footprint) {
+  const Root::Tables& tables = root.tables();
+  const Model& model = tables.model;
+  Material material;
+  material.tet = location.tet;
+  if (!location.tet.exists()) return material;
+  const std::int32_t region = model.mesh.region[location.tet];
+
+  std::array<float, max_components> covered{}; // per component: a layer need not have every channel
+  float shown_through = 1;
+  for (std::size_t i = tables.layers.size(); i-- > 0;) {
+    const auto& [reader, component] = tables.layers[i];
+    const Layer& layer = *reader.layer;
+    if (layer.region >= 0 && layer.region != region) continue;
+    SimplexPoint at;
+    std::span<const Lookup> lookups;
+    if (layer.domain == Domain::solid) {
+      lookups = row_of(layer, location.tet);
+      for (int k = 0; k < 4; ++k) at.barycentric[k] = static_cast<float>(location.barycentric[k]);
+      if (needs_gradient(reader, footprint)) at.gradient = barycentric_gradients(model.mesh, location.tet);
+    } else {
+      if (!point.facet.exists()) continue;
+      lookups = row_of(layer, point.facet);
+      if (!lookups.empty()) at = point_on_facet(model, point.facet, point.position);
+    }
+    if (lookups.empty()) continue;
+    at.footprint = footprint;
+    const LayerValue value = composite(reader, lookups, at);
+    material.lookups_read += static_cast<std::uint16_t>(value.lookups_read);
+    bool all_covered = true;
+    for (int c = 0; c < reader.components; ++c) {
+      float& below = covered[component[c]];
+      material.value[component[c]] += (1 - below) * value.value[c];
+      below += (1 - below) * value.coverage;
+    }
+    for (int c = 0; c < tables.components; ++c) all_covered &= covered[c] >= 0.999f;
+    shown_through *= 1 - value.coverage;
+    if (all_covered) break;
+  }
+  material.coverage = 1 - shown_through;
+  for (int c = 0; c < tables.components; ++c)
+    if (covered[c] > 0) material.value[c] /= covered[c];
+  for (int first : tables.directions) {
+    float* d = material.value.data() + first;
+    const float length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    if (length > 0)
+      for (int k = 0; k < 3; ++k) d[k] /= length;
+  }
+  return material;
+}
+
+} // namespace pith
