@@ -1,0 +1,357 @@
+#include "recipe/build.h"
+
+#include "recipe/plain_layer.h"
+#include "recipe/stage_codec.h"
+#include "recipe/stage_keys.h"
+#include "recipe/steps.h"
+#include "volume/base/error.h"
+#include "volume/exemplar/procedural.h"
+#include "volume/io/atomic_file.h"
+#include "volume/io/exemplar_io.h"
+#include "volume/io/mesh_io.h"
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+namespace pith {
+namespace fs = std::filesystem;
+namespace {
+
+const Vec3d neutral_grey{0.5, 0.5, 0.5}; ///< regions that no solid fills
+
+/// An input file, found from the recipe's folder.
+fs::path input_path(const fs::path& folder, const std::string& file, const std::string& where) {
+  const fs::path path = fs::path(file).is_absolute() ? fs::path(file) : folder / file;
+  std::error_code error;
+  if (!fs::exists(path, error))
+    throw InvalidInput(where, "\"" + file + "\" does not exist", "paths count from the recipe's folder");
+  if (!fs::is_regular_file(path, error)) throw InvalidInput(where, "\"" + file + "\" is not a file", "name a file");
+  return path;
+}
+
+/// One build: fetches results from the caches, computes what is missing, keeps the books.
+class Run {
+public:
+  Run(const BuildOptions& options, MemoryCache& memory, DiskCache& disk, const BuildProgress& progress)
+      : options_(options), memory_(memory), disk_(disk), progress_(progress) {}
+
+  KeyMaker key(const char* stage) const {
+    KeyMaker maker(options_.code);
+    maker.add(stage);
+    return maker;
+  }
+
+  /// Announces a stage; reports come in the order of these calls, whichever way the results are fetched.
+  void announce(const std::string& name, const Key& key) { reports_.push_back({name, key.text(), 0, true}); }
+
+  /// The result of a stage from memory, from disk, or computed.
+  template <class T, class Compute>
+  std::shared_ptr<const T> result(const std::string& name, const Key& key, bool on_disk, const Compute& compute) {
+    tell(name, 0);
+    const auto start = std::chrono::steady_clock::now();
+    bool cached = true;
+    std::shared_ptr<const T> value = memory_.load<T>(key);
+    if (!value && on_disk) value = from_disk<T>(key);
+    if (!value) {
+      cached = false;
+      const double inner_before = inner_seconds_;
+      value = std::make_shared<const T>(
+          compute([&](double fraction) { return !progress_ || progress_(name, fraction); }));
+      finish(name, start, inner_seconds_ - inner_before, cached);
+      remember(key, value, on_disk);
+    } else {
+      finish(name, start, 0, cached);
+    }
+    tell(name, 1);
+    return value;
+  }
+
+  std::vector<StageReport> reports() const { return reports_; }
+
+private:
+  void tell(const std::string& name, double fraction) {
+    if (progress_ && !progress_(name, fraction)) throw Cancelled();
+  }
+
+  void finish(const std::string& name, std::chrono::steady_clock::time_point start, double inner, bool cached) {
+    const double all = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const auto report =
+        std::find_if(reports_.begin(), reports_.end(), [&](const StageReport& r) { return r.name == name; });
+    report->seconds = all - inner;
+    report->cached = cached;
+    inner_seconds_ += all - inner; // stages that were fetched while this one ran count for themselves
+  }
+
+  template <class T>
+  std::shared_ptr<const T> from_disk(const Key& key) {
+    const std::optional<std::string> bytes = disk_.load(key);
+    if (!bytes) return nullptr;
+    try {
+      auto value = std::make_shared<T>();
+      ArchiveReader reader(*bytes);
+      transfer(reader, *value);
+      if (reader.left() != 0) throw DamagedArchive();
+      std::shared_ptr<const T> result = std::move(value);
+      memory_.store(key, result, bytes->size());
+      return result;
+    } catch (const DamagedArchive&) {
+      disk_.remove(key);
+      return nullptr;
+    }
+  }
+
+  template <class T>
+  void remember(const Key& key, const std::shared_ptr<const T>& value, bool on_disk) {
+    ArchiveCounter counter;
+    transfer(counter, *value);
+    memory_.store(key, value, counter.bytes);
+    if (!on_disk || !disk_.on()) return;
+    std::string bytes;
+    bytes.reserve(counter.bytes);
+    ArchiveWriter writer(bytes);
+    transfer(writer, *value);
+    disk_.store(key, bytes);
+  }
+
+  const BuildOptions& options_;
+  MemoryCache& memory_;
+  DiskCache& disk_;
+  const BuildProgress& progress_;
+  std::vector<StageReport> reports_;
+  double inner_seconds_ = 0;
+};
+
+/// The keys of one solid's stages.
+struct SolidKeys {
+  Key depth, frames, exemplar, fill;
+};
+
+class RecipeBuild {
+public:
+  RecipeBuild(Run& run, const Recipe& recipe, const fs::path& folder) : run_(run), recipe_(recipe), folder_(folder) {}
+
+  BuildResult result() {
+    make_keys();
+    BuildResult built;
+    const auto tets = root();
+    built.note = tets->note;
+    Model& model = built.model;
+    model.name = recipe_.name;
+    model.mesh = tets->mesh;
+    model.boundary = boundary_of(model.mesh);
+    if (!tets->input.empty()) model.boundary.input.assign(tets->input.begin(), tets->input.end());
+    fill_solids(model);
+    add_plain_regions(model);
+    built.pieces = recipe_.cuts.empty() && recipe_.moves.empty()
+                       ? whole_piece(model.mesh)
+                       : *pieces_after(model, recipe_.cuts.size() + recipe_.moves.size());
+    built.stages = run_.reports();
+    return built;
+  }
+
+private:
+  std::string where(const std::string& path) const { return recipe_.file + ": " + path; }
+  static std::string numbered(const char* stage, std::size_t i) {
+    return std::string(stage) + " " + std::to_string(i);
+  }
+  std::string solid_path(std::size_t i) const { return where("/solids/" + std::to_string(i)); }
+
+  void make_keys() {
+    surface_path_ = input_path(folder_, recipe_.surface.file, where("/surface/file"));
+    std::string extension = surface_path_.extension().string();
+    surface_key_ =
+        run_.key("surface").add(key_of(file_content(surface_path_))).add(extension).add(recipe_.surface.scale).key();
+    run_.announce("surface", surface_key_);
+    KeyMaker tets = run_.key("tets").add(surface_key_);
+    tets_key_ = add(tets, recipe_.tetrahedralize).key();
+    run_.announce("tets", tets_key_);
+    for (std::size_t i = 0; i < recipe_.solids.size(); ++i) {
+      const Solid& solid = recipe_.solids[i];
+      SolidKeys keys;
+      if (solid.kind == Solid::Kind::lapped) {
+        KeyMaker depth = run_.key("depth").add(tets_key_).add(static_cast<int>(solid.region));
+        keys.depth = add(add(depth, solid.depth), solid.depth_options).key();
+        KeyMaker frames = run_.key("frames").add(keys.depth);
+        keys.frames = add(add(frames, solid.orientation), solid.frame).key();
+        keys.exemplar = exemplar_key(solid.exemplar, solid_path(i) + "/exemplar");
+        KeyMaker fill = run_.key("fill").add(keys.frames).add(keys.exemplar);
+        keys.fill = add(fill, solid.fill).key();
+        run_.announce(numbered("depth", i), keys.depth);
+        run_.announce(numbered("frames", i), keys.frames);
+        run_.announce(numbered("exemplar", i), keys.exemplar);
+        run_.announce(numbered("fill", i), keys.fill);
+      }
+      solid_keys_.push_back(keys);
+    }
+    Key before = tets_key_;
+    for (std::size_t k = 0; k < recipe_.cuts.size(); ++k) {
+      KeyMaker cut = run_.key("cut").add(before);
+      step_keys_.push_back(before = add(cut, recipe_.cuts[k]).key());
+      run_.announce(numbered("cut", k), before);
+    }
+    for (std::size_t k = 0; k < recipe_.moves.size(); ++k) {
+      KeyMaker move = run_.key("move").add(before);
+      step_keys_.push_back(before = add(move, recipe_.moves[k]).key());
+      run_.announce(numbered("move", k), before);
+    }
+  }
+
+  Key exemplar_key(const ExemplarSource& source, const std::string& at) const {
+    KeyMaker maker = run_.key("exemplar");
+    if (source.file.empty()) return maker.add(source.procedural).add(source.resolution).add(source.seed).key();
+    const fs::path path = input_path(folder_, source.file, at + "/file");
+    return maker.add(path.extension().string()).add(key_of(file_content(path))).key();
+  }
+
+  std::shared_ptr<const TetrahedralizeResult> root() {
+    return run_.result<TetrahedralizeResult>("tets", tets_key_, true, [&](const Progress& progress) {
+      const auto surface = run_.result<TriMesh>("surface", surface_key_, false, [&](const Progress&) {
+        return read_tri_mesh(surface_path_, recipe_.surface.scale);
+      });
+      TetrahedralizeResult result =
+          tetrahedralize(*surface, surface_path_.filename().string(), recipe_.tetrahedralize, progress);
+      result.surface = {};
+      return result;
+    });
+  }
+
+  void fill_solids(Model& model) {
+    std::int32_t regions = 0;
+    for (const std::int32_t region : model.mesh.region) regions = std::max(regions, region + 1);
+    std::vector<std::uint8_t> vertex_taken(model.mesh.vertex_count(), 0);
+    for (std::size_t i = 0; i < recipe_.solids.size(); ++i) {
+      const Solid& solid = recipe_.solids[i];
+      if (solid.region >= regions)
+        throw InvalidInput(solid_path(i) + "/region", "is " + std::to_string(solid.region),
+                           "the surface encloses " + std::to_string(regions) + " region(s), counted from 0");
+      if (solid.kind == Solid::Kind::plain)
+        model.layer.push_back(plain_layer(model.mesh, solid.region, solid.color, "plain " + std::to_string(i)));
+      else
+        model.layer.push_back(lapped_layer(model, i, vertex_taken));
+    }
+  }
+
+  Layer lapped_layer(Model& model, std::size_t i, std::vector<std::uint8_t>& vertex_taken) {
+    const Solid& solid = recipe_.solids[i];
+    const SolidKeys& keys = solid_keys_[i];
+    const auto depth = run_.result<DepthField>(numbered("depth", i), keys.depth, true, [&](const Progress&) {
+      return depth_field(model.mesh, model.boundary, solid.region, solid.depth, solid_path(i) + "/depth",
+                         solid.depth_options);
+    });
+    const auto frames = run_.result<FrameField>(numbered("frames", i), keys.frames, true, [&](const Progress&) {
+      return frames_from_depth(model.mesh, locator(model), solid.region, *depth, solid.orientation,
+                               solid_path(i) + "/orientation", solid.frame);
+    });
+    const auto exemplar = run_.result<Exemplar>(numbered("exemplar", i), keys.exemplar, true, [&](const Progress&) {
+      const ExemplarSource& source = solid.exemplar;
+      if (!source.file.empty())
+        return read_exemplar(input_path(folder_, source.file, solid_path(i) + "/exemplar/file"));
+      return procedural_exemplar(source.procedural, {.resolution = source.resolution, .seed = source.seed});
+    });
+    // The exemplar has a cache entry of its own: the fill's is stored without it.
+    const auto fill = run_.result<Layer>(numbered("fill", i), keys.fill, true, [&](const Progress& progress) {
+      const LapInput input{.mesh = model.mesh,
+                           .boundary = model.boundary,
+                           .region = solid.region,
+                           .axes = frames->axes,
+                           .scale = frames->scale,
+                           .depth = depth->value,
+                           .singular = frames->singular};
+      Layer layer = lap(input, *exemplar, solid.fill, progress).layer;
+      layer.exemplar.clear();
+      return layer;
+    });
+    add_fields(model, solid.region, *depth, *frames, vertex_taken);
+    Layer layer = *fill;
+    layer.exemplar = {*exemplar};
+    return layer;
+  }
+
+  /// Copies one region's fields into the model's. A vertex on an interface keeps the depth of the solid listed first.
+  static void add_fields(Model& model, std::int32_t region, const DepthField& depth, const FrameField& frames,
+                         std::vector<std::uint8_t>& vertex_taken) {
+    const TetMesh& mesh = model.mesh;
+    Fields& field = model.field;
+    field.depth.resize(mesh.vertex_count(), 0);
+    field.axes.resize(mesh.tet_count(), Mat3d::Identity());
+    field.scale.resize(mesh.tet_count(), 1);
+    field.singular.resize(mesh.tet_count(), 1);
+    std::vector<std::uint8_t> mine(mesh.vertex_count(), 0);
+    for (const TetId tet : all_ids<TetId>(mesh.tet_count())) {
+      if (mesh.region[tet] != region) continue;
+      field.axes[tet] = frames.axes[tet];
+      field.scale[tet] = frames.scale[tet];
+      field.singular[tet] = frames.singular[tet];
+      for (const VertexId v : mesh.corner[tet]) {
+        if (!vertex_taken[v]) field.depth[v] = depth.value[v];
+        mine[v] = 1;
+      }
+    }
+    for (std::size_t v = 0; v < mine.size(); ++v) vertex_taken[v] |= mine[v];
+  }
+
+  void add_plain_regions(Model& model) const {
+    if (recipe_.solids.empty()) {
+      model.layer.push_back(plain_layer(model.mesh, -1, neutral_grey, "plain"));
+      return;
+    }
+    std::set<std::int32_t> bare(model.mesh.region.begin(), model.mesh.region.end());
+    for (const Solid& solid : recipe_.solids) bare.erase(solid.region);
+    for (const std::int32_t region : bare)
+      model.layer.push_back(plain_layer(model.mesh, region, neutral_grey, "plain region " + std::to_string(region)));
+  }
+
+  /// The pieces after the first `count` steps: the last that is remembered, and from there on one by one.
+  std::shared_ptr<const Pieces> pieces_after(const Model& model, std::size_t count) {
+    if (count == 0) return std::make_shared<const Pieces>(whole_piece(model.mesh));
+    const std::size_t k = count - 1;
+    const std::size_t cuts = recipe_.cuts.size();
+    const bool is_cut = k < cuts;
+    const std::string name = is_cut ? numbered("cut", k) : numbered("move", k - cuts);
+    return run_.result<Pieces>(name, step_keys_[k], true, [&](const Progress&) {
+      Pieces pieces = *pieces_after(model, k);
+      if (is_cut)
+        apply_cut(pieces, model.mesh, model.boundary, locator(model), recipe_.cuts[k],
+                  where("/cuts/" + std::to_string(k)));
+      else
+        apply_move(pieces, model.mesh, locator(model), recipe_.moves[k - cuts],
+                   where("/moves/" + std::to_string(k - cuts)));
+      return pieces;
+    });
+  }
+
+  const Locator& locator(const Model& model) {
+    if (!locator_) locator_ = std::make_unique<Locator>(model.mesh, model.boundary);
+    return *locator_;
+  }
+
+  Run& run_;
+  const Recipe& recipe_;
+  const fs::path& folder_;
+  fs::path surface_path_;
+  Key surface_key_, tets_key_;
+  std::vector<SolidKeys> solid_keys_;
+  std::vector<Key> step_keys_;
+  std::unique_ptr<Locator> locator_;
+};
+
+} // namespace
+
+std::map<std::string, std::string> BuildResult::keys() const {
+  std::map<std::string, std::string> result;
+  for (const StageReport& stage : stages) result[stage.name] = stage.key;
+  return result;
+}
+
+Builder::Builder(BuildOptions options)
+    : options_(std::move(options)), memory_(options_.memory_bytes), disk_(options_.cache, options_.cache_bytes) {
+  if (options_.code.empty()) options_.code = code_version();
+}
+
+BuildResult Builder::build(const Recipe& recipe, const fs::path& folder, const BuildProgress& progress) {
+  Run run(options_, memory_, disk_, progress);
+  return RecipeBuild(run, recipe, folder).result();
+}
+
+} // namespace pith

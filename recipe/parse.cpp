@@ -1,0 +1,239 @@
+// Recipe: the document as a whole, its surface and its solids. docs/recipe.md is the manual of the format.
+#include "recipe/json_node.h"
+#include "recipe/parse_steps.h"
+#include "recipe/recipe.h"
+#include "volume/base/error.h"
+#include "volume/exemplar/procedural.h"
+#include "volume/io/atomic_file.h"
+
+#include <algorithm>
+
+namespace pith {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double endless = std::numeric_limits<double>::infinity();
+constexpr int format_version = 1;
+
+SurfaceSource surface_from(const JsonNode& node) {
+  node.object({"file", "scale"});
+  SurfaceSource result;
+  result.file = node.at("file").text();
+  node.optional_number("scale", result.scale, range::positive);
+  return result;
+}
+
+TetrahedralizeOptions tetrahedralize_from(const JsonNode& node) {
+  node.object({"method", "interior_edge", "boundary_edge", "radius_edge", "wrap_alpha", "wrap_offset", "time_limit"});
+  TetrahedralizeOptions result;
+  if (const auto method = node.find("method"))
+    result.method = static_cast<TetrahedralizeOptions::Method>(method->choice({"automatic", "tetgen", "wrap"}));
+  const NumberRange edge{0, endless, false, "positive (0: the default)", "give millimetres"};
+  node.optional_number("interior_edge", result.interior_edge, edge);
+  node.optional_number("boundary_edge", result.boundary_edge, edge);
+  node.optional_number("radius_edge", result.radius_edge, {1.1, 10, false, "1.1 to 10", "1.4 makes good tets"});
+  node.optional_number("wrap_alpha", result.wrap_alpha,
+                       {1e-4, 1, false, "0.0001 to 1", "give a fraction of the diagonal"});
+  node.optional_number("wrap_offset", result.wrap_offset,
+                       {1e-5, 1, false, "0.00001 to 1", "give a fraction of the diagonal"});
+  node.optional_number("time_limit", result.time_limit, {0, endless, true, "positive", "give seconds"});
+  if (result.wrap_offset > result.wrap_alpha)
+    node.fail("has a wrap_offset above its wrap_alpha", "make the offset the smaller one, a tenth of alpha, say");
+  return result;
+}
+
+DepthConstraint depth_from(const JsonNode& node) {
+  node.object({"skin", "triangles", "stroke", "value"});
+  DepthConstraint result;
+  result.value = node.at("value").number({0, 1, false, "0 to 1", "0 is the outermost depth, 1 the innermost"});
+  const int places = node.has("skin") + node.has("triangles") + node.has("stroke");
+  if (places != 1)
+    node.fail(places == 0 ? "names no place" : "names more than one place",
+              "give exactly one of \"skin\": true, \"triangles\" and \"stroke\"");
+  if (const auto skin = node.find("skin")) {
+    result.skin = skin->boolean();
+    if (!result.skin) skin->fail("is false, which names no place", "write true, or remove the entry");
+  }
+  if (const auto triangles = node.find("triangles"))
+    for (const JsonNode& triangle : triangles->items(1, "name input triangles, from 0"))
+      result.triangles.emplace_back(triangle.whole(0, 0xfffffffeLL, "give the number of an input triangle, from 0"));
+  if (const auto stroke = node.find("stroke")) result.stroke = stroke->points(1, "give points [x, y, z] in mm");
+  return result;
+}
+
+void refuse_contradictions(const JsonNode& node, const std::vector<DepthConstraint>& depth) {
+  const DepthConstraint* skin = nullptr;
+  double low = 1, high = 0;
+  for (const DepthConstraint& one : depth) {
+    low = std::min(low, one.value), high = std::max(high, one.value);
+    if (!one.skin) continue;
+    if (skin && skin->value != one.value) node.fail("gives the skin two depths", "keep one of the \"skin\" entries");
+    skin = &one;
+  }
+  if (low == high) node.fail("gives every place the same depth", "add a place of another depth, the core at 1, say");
+  for (std::size_t i = 0; i < depth.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      if (depth[i].value == depth[j].value) continue;
+      for (const TriangleId t : depth[i].triangles)
+        if (std::find(depth[j].triangles.begin(), depth[j].triangles.end(), t) != depth[j].triangles.end())
+          node.fail("gives input triangle " + std::to_string(t) + " two depths (entries " + std::to_string(j) +
+                        " and " + std::to_string(i) + ")",
+                    "keep it in one of them");
+    }
+}
+
+std::vector<AxisStroke> orientation_from(const JsonNode& node) {
+  std::vector<AxisStroke> result;
+  for (const JsonNode& entry : node.items(1, "draw a stroke along the texture's T axis")) {
+    entry.object({"stroke"});
+    AxisStroke stroke{entry.at("stroke").points(2, "a direction needs two points [x, y, z] in mm")};
+    const bool moves = std::any_of(stroke.point.begin(), stroke.point.end(),
+                                   [&](const Vec3d& p) { return p != stroke.point.front(); });
+    if (!moves) entry.at("stroke").fail("stays at one point", "give two different points");
+    result.push_back(std::move(stroke));
+  }
+  return result;
+}
+
+ExemplarSource exemplar_from(const JsonNode& node) {
+  node.object({"file", "procedural", "resolution", "seed"});
+  ExemplarSource result;
+  if (node.has("file") == node.has("procedural"))
+    node.fail(node.has("file") ? "has both \"file\" and \"procedural\"" : "has neither \"file\" nor \"procedural\"",
+              "give exactly one of them");
+  if (const auto file = node.find("file")) {
+    result.file = file->text();
+    for (const char* key : {"resolution", "seed"})
+      if (node.has(key))
+        node.at(key).fail("is for procedural exemplars only", "remove it: the file has its own size");
+  }
+  if (const auto name = node.find("procedural")) {
+    result.procedural = name->text();
+    const std::vector<std::string> known = procedural_names();
+    if (std::find(known.begin(), known.end(), result.procedural) == known.end()) {
+      std::string all;
+      for (const std::string& one : known) all += (all.empty() ? "" : ", ") + one;
+      name->fail("is \"" + result.procedural + "\", which no generator makes", "known names: " + all);
+    }
+  }
+  node.optional_whole("resolution", result.resolution, 16, 512, "give texels along each axis");
+  node.optional_seed("seed", result.seed);
+  return result;
+}
+
+void read_mask(const JsonNode& node, SplotchOptions& mask) {
+  node.object({"resolution", "radius", "radius_along", "drop_off", "irregularity", "seed"});
+  node.optional_whole("resolution", mask.resolution, 4, 256, "give texels along each axis");
+  node.optional_number("radius", mask.radius, {0, 0.5, true, "above 0, to 0.5", "give texture widths"});
+  node.optional_number("radius_along", mask.radius_along, {0, 0.5, true, "above 0, to 0.5", "give texture widths"});
+  node.optional_number("drop_off", mask.drop_off, {0, 0.5, true, "above 0, to 0.5", "give texture widths"});
+  node.optional_number("irregularity", mask.irregularity, {0, 0.25, false, "0 to 0.25", "give texture widths"});
+  node.optional_seed("seed", mask.seed);
+  if (mask.drop_off > mask.radius) node.fail("has a drop_off wider than its radius", "make drop_off the smaller one");
+}
+
+void read_frame(const JsonNode& node, FrameOptions& frame) {
+  node.object({"layer_width", "singular_sine", "smallest_scale", "largest_scale"});
+  node.optional_number("layer_width", frame.layer_width, range::positive);
+  node.optional_number("singular_sine", frame.singular_sine, range::fraction);
+  node.optional_number("smallest_scale", frame.smallest_scale, range::positive_mm);
+  node.optional_number("largest_scale", frame.largest_scale, range::positive_mm);
+  if (frame.largest_scale > 0 && frame.smallest_scale > frame.largest_scale)
+    node.fail("has a smallest_scale above its largest_scale", "swap them");
+}
+
+void read_fill(const JsonNode& node, LapOptions& fill) {
+  node.object({"frame_tolerance", "coverage_order", "max_rounds"});
+  node.optional_number("frame_tolerance", fill.frame_tolerance, {0, pi, true, "above 0, to pi", "give radians"});
+  node.optional_whole("coverage_order", fill.coverage_order, 1, 16, "8 samples each tet edge eight times");
+  node.optional_whole("max_rounds", fill.max_rounds, 1, 1'000'000, "give a number of rounds");
+}
+
+Solid solid_from(const JsonNode& node) {
+  Solid result;
+  if (!node.is_object()) node.object({});
+  const std::size_t type = node.at("type").choice({"plain", "2-b", "0", "1-a", "1-b", "2-a", "2-c", "2-d"});
+  if (type > 1)
+    node.at("type").fail("is a kind of solid texture that pith does not fill yet", "use \"2-b\" or \"plain\"");
+  if (const auto region = node.find("region"))
+    result.region =
+        static_cast<std::int32_t>(region->whole(0, 1'000'000, "regions count from 0, one per closed shell"));
+  if (type == 0) {
+    node.object({"type", "region", "color"});
+    result.kind = Solid::Kind::plain;
+    const JsonNode color = node.at("color");
+    result.color = color.vector3();
+    if ((result.color.array() < 0).any() || (result.color.array() > 1).any())
+      color.fail("has a component outside 0 to 1", "give linear red, green, blue");
+    return result;
+  }
+  node.object(
+      {"type", "region", "depth", "depth_options", "orientation", "frame", "exemplar", "mask", "fill", "seed"});
+  result.fill.type = TextureType::tensor_2b;
+  const JsonNode depth = node.at("depth");
+  for (const JsonNode& entry : depth.items(2, "a depth needs a place of value 0 and one of value 1"))
+    result.depth.push_back(depth_from(entry));
+  refuse_contradictions(depth, result.depth);
+  if (const auto options = node.find("depth_options")) {
+    options->object({"max_centers", "stroke_spacing"});
+    options->optional_whole("max_centers", result.depth_options.max_centers, 10, 20'000, "1500 suits most solids");
+    options->optional_number("stroke_spacing", result.depth_options.stroke_spacing, range::positive_mm);
+  }
+  result.orientation = orientation_from(node.at("orientation"));
+  if (const auto frame = node.find("frame")) read_frame(*frame, result.frame);
+  result.exemplar = exemplar_from(node.at("exemplar"));
+  if (const auto mask = node.find("mask")) read_mask(*mask, result.fill.splotch);
+  if (const auto fill = node.find("fill")) read_fill(*fill, result.fill);
+  node.optional_seed("seed", result.fill.seed);
+  return result;
+}
+
+} // namespace
+
+Recipe parse_recipe(const std::string& text, const std::string& file) {
+  const nlohmann::json document = json_of(text, file);
+  const JsonNode root(document, file);
+  root.object({"pith", "name", "surface", "tetrahedralize", "solids", "cuts", "moves", "view", "scene"});
+  Recipe result;
+  result.file = file;
+  root.at("pith").whole(format_version, format_version, "this program reads version 1 of the format");
+  if (const auto name = root.find("name"))
+    result.name = name->text();
+  else
+    result.name = std::filesystem::path(file).stem().string();
+  result.surface = surface_from(root.at("surface"));
+  if (const auto options = root.find("tetrahedralize")) result.tetrahedralize = tetrahedralize_from(*options);
+  if (const auto solids = root.find("solids"))
+    for (const JsonNode& entry : solids->items(0, "")) {
+      Solid solid = solid_from(entry);
+      for (std::size_t i = 0; i < result.solids.size(); ++i)
+        if (result.solids[i].region == solid.region)
+          entry.fail("fills region " + std::to_string(solid.region) + ", which /solids/" + std::to_string(i) +
+                         " fills already",
+                     "give each solid a region of its own");
+      result.solids.push_back(std::move(solid));
+    }
+  if (const auto cuts = root.find("cuts"))
+    for (const JsonNode& entry : cuts->items(0, "")) result.cuts.push_back(cut_from(entry));
+  if (const auto moves = root.find("moves"))
+    for (const JsonNode& entry : moves->items(0, "")) result.moves.push_back(move_from(entry));
+  if (const auto view = root.find("view")) result.view = view_from(*view);
+  if (const auto scene = root.find("scene")) result.scene = scene->text();
+  return result;
+}
+
+Recipe read_recipe(const std::filesystem::path& path) {
+  return parse_recipe(file_content(path), path.filename().string());
+}
+
+CutStep parse_cut(const std::string& text, const std::string& file) {
+  const nlohmann::json document = json_of(text, file);
+  return cut_from(JsonNode(document, file));
+}
+
+View parse_view(const std::string& text, const std::string& file) {
+  const nlohmann::json document = json_of(text, file);
+  return view_from(JsonNode(document, file));
+}
+
+} // namespace pith

@@ -1,0 +1,126 @@
+// Recipe: cuts, moves and views.
+#include "recipe/parse_steps.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+namespace pith {
+namespace {
+
+PlaneCut plane_from(const JsonNode& node) {
+  node.object({"normal", "offset"});
+  PlaneCut result;
+  result.normal = node.at("normal").vector3();
+  if (!(result.normal.norm() > 0)) node.at("normal").fail("has no length", "give a direction such as [0, 0, 1]");
+  node.optional_number("offset", result.offset, range::any);
+  return result;
+}
+
+SphereCut sphere_from(const JsonNode& node) {
+  node.object({"center", "radius"});
+  SphereCut result;
+  result.center = node.at("center").vector3();
+  result.radius = node.at("radius").number(range::positive_mm);
+  return result;
+}
+
+StrokeCut stroke_from(const JsonNode& node) {
+  node.object({"points", "view"});
+  StrokeCut result;
+  const JsonNode points = node.at("points");
+  for (const JsonNode& point : points.items(2, "a stroke needs two points [u, v] or more"))
+    result.point.push_back(point.vector2());
+  const bool moves = std::any_of(result.point.begin(), result.point.end(),
+                                 [&](const Vec2d& p) { return p != result.point.front(); });
+  if (!moves) points.fail("stay at one place", "give two different points");
+  result.view = view_from(node.at("view"));
+  return result;
+}
+
+/// { "axis": [x, y, z], "angle": radians }
+void read_turn(const JsonNode& node, Vec3d& axis, double& angle) {
+  axis = node.at("axis").vector3();
+  if (!(axis.norm() > 0)) node.at("axis").fail("has no length", "give a direction such as [0, 0, 1]");
+  angle = node.at("angle").number({-1e6, 1e6, false, "an angle", "give radians"});
+}
+
+PiecePlacement placement_from(const JsonNode& node) {
+  node.object({"piece", "rotation", "translation"});
+  PiecePlacement result;
+  result.piece = node.at("piece").vector3();
+  if (const auto rotation = node.find("rotation")) {
+    const auto rows = rotation->points(3, "give three rows of three numbers");
+    if (rows.size() != 3)
+      rotation->fail("has " + std::to_string(rows.size()) + " rows, must have 3", "give a 3×3 matrix");
+    for (int row = 0; row < 3; ++row) result.placement.rotation.row(row) = rows[row].transpose();
+    const Mat3d& r = result.placement.rotation;
+    if (!((r * r.transpose() - Mat3d::Identity()).norm() < 1e-6) || r.determinant() < 0)
+      rotation->fail("is not a rotation", "its rows must be of unit length, at right angles, and right-handed");
+  }
+  if (const auto translation = node.find("translation")) result.placement.translation = translation->vector3();
+  return result;
+}
+
+} // namespace
+
+View view_from(const JsonNode& node) {
+  node.object({"eye", "target", "up", "vertical_angle", "height"});
+  View result;
+  result.eye = node.at("eye").vector3();
+  if (const auto target = node.find("target")) result.target = target->vector3();
+  if (const auto up = node.find("up")) result.up = up->vector3();
+  node.optional_number("vertical_angle", result.vertical_angle,
+                       {0, 3.1, false, "0 to 3.1", "give the full opening angle in radians; 0 is orthographic"});
+  node.optional_number("height", result.height, range::positive_mm);
+  const Vec3d along = result.target - result.eye;
+  if (!(along.norm() > 0)) node.fail("has its eye at its target", "move one of them");
+  if (!(along.normalized().cross(result.up.normalized()).norm() > 1e-9))
+    node.fail("has an up that is parallel to the line of sight, or no up", "give another up");
+  return result;
+}
+
+CutStep cut_from(const JsonNode& node) {
+  node.object({"plane", "sphere", "stroke", "keep", "spread", "snap", "only", "placements"});
+  CutStep result;
+  const int shapes = node.has("plane") + node.has("sphere") + node.has("stroke");
+  if (shapes != 1)
+    node.fail(shapes == 0 ? "has no shape" : "has more than one shape",
+              "give exactly one of \"plane\", \"sphere\" and \"stroke\"");
+  if (const auto plane = node.find("plane")) result.shape = plane_from(*plane);
+  if (const auto sphere = node.find("sphere")) result.shape = sphere_from(*sphere);
+  if (const auto stroke = node.find("stroke")) result.shape = stroke_from(*stroke);
+  if (const auto keep = node.find("keep")) result.keep = static_cast<Keep>(keep->choice({"both", "left", "right"}));
+  node.optional_number("spread", result.spread, range::mm);
+  node.optional_number("snap", result.snap, {0, 0.4, false, "0 to 0.4", "give a fraction of an edge"});
+  if (result.spread > 0 && result.keep != Keep::both)
+    node.fail("spreads halves but keeps only one of them", "remove \"spread\", or keep both");
+  if (const auto only = node.find("only")) {
+    // One point, or a list of points.
+    if (only->is_array() && !only->items(1, "name pieces by rest points").front().is_array())
+      result.only = {only->vector3()};
+    else
+      result.only = only->points(1, "name pieces by rest points");
+  }
+  if (const auto placements = node.find("placements"))
+    for (const JsonNode& entry : placements->items(0, "")) result.placements.push_back(placement_from(entry));
+  return result;
+}
+
+MoveStep move_from(const JsonNode& node) {
+  node.object({"piece", "translate", "rotate", "about"});
+  MoveStep result;
+  result.piece = node.at("piece").vector3();
+  if (!node.has("translate") && !node.has("rotate")) node.fail("moves nothing", "add \"translate\" or \"rotate\"");
+  if (const auto translate = node.find("translate")) result.translate = translate->vector3();
+  if (const auto rotate = node.find("rotate")) {
+    rotate->object({"axis", "angle"});
+    read_turn(*rotate, result.axis, result.angle);
+  }
+  if (const auto about = node.find("about")) {
+    if (!node.has("rotate")) about->fail("is given without \"rotate\"", "remove it, or add \"rotate\"");
+    result.about = about->vector3();
+  }
+  return result;
+}
+
+} // namespace pith

@@ -1,0 +1,13 @@
+#pragma once
+// The parts of a recipe that are steps on a finished solid: cuts, moves, views. Only this module's parsers include
+// it.
+#include "recipe/json_node.h"
+#include "recipe/recipe.h"
+
+namespace pith {
+
+CutStep cut_from(const JsonNode& node);
+MoveStep move_from(const JsonNode& node);
+View view_from(const JsonNode& node);
+
+} // namespace pith

@@ -1,0 +1,111 @@
+#pragma once
+// The document: what somebody wrote down to make a model. A recipe names inputs, constraints, strokes, cuts and
+// moves; it never holds a number that depends on the mesh (tets, facets, patches, pieces): places are rest points and
+// input triangles. docs/recipe.md describes the JSON that stands for it.
+#include "volume/cut/level_set.h"
+#include "volume/field/depth.h"
+#include "volume/field/frames.h"
+#include "volume/lap/lap.h"
+#include "volume/mesh/tetrahedralize.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace pith {
+
+/// The closed surface that is filled.
+struct SurfaceSource {
+  std::string file; ///< relative to the recipe's folder
+  double scale = 1; ///< multiplies the coordinates; 1000 for a file in metres
+};
+
+/// Where a solid texture comes from: a file, or a generator by name. Exactly one of `file` and `procedural` is set.
+struct ExemplarSource {
+  std::string file;       ///< relative to the recipe's folder
+  std::string procedural; ///< a name of procedural_names()
+  int resolution = 128;   ///< of a procedural exemplar, texels along each axis
+  std::uint64_t seed = 1; ///< of a procedural exemplar
+};
+
+/// What one region is made of.
+struct Solid {
+  enum class Kind {
+    plain, ///< one colour all the way through
+    lapped ///< a lapped solid texture of `fill.type`
+  };
+  Kind kind = Kind::lapped;
+  std::int32_t region = 0;    ///< one per closed shell of the surface, 0, 1, 2 … from the outside in
+  Vec3d color{0.5, 0.5, 0.5}; ///< plain: linear Rec.709
+
+  std::vector<DepthConstraint> depth;
+  DepthOptions depth_options;
+  std::vector<AxisStroke> orientation;
+  FrameOptions frame;
+  ExemplarSource exemplar;
+  LapOptions fill; ///< type, seed, mask (splotch) and limits
+};
+
+/// Which side of a cut stays.
+enum class Keep { both, left, right };
+
+/// Where a piece stood when a cut was made.
+struct PiecePlacement {
+  Vec3d piece = Vec3d::Zero(); ///< a rest point in the piece
+  Rigid placement;
+};
+
+/// One cut. The shape is given in world space, where the pieces stand.
+struct CutStep {
+  std::variant<PlaneCut, SphereCut, StrokeCut> shape;
+  Keep keep = Keep::both;
+  double spread = 0;                      ///< mm by which the halves are moved apart afterwards
+  double snap = 0.01;                     ///< CutOptions::snap
+  std::vector<Vec3d> only;                ///< rest points in the pieces to cut; empty: all pieces
+  std::vector<PiecePlacement> placements; ///< where pieces stood; those not named stay where earlier steps left them
+};
+
+/// Moves one piece: a turn about `about`, then a shift.
+struct MoveStep {
+  Vec3d piece = Vec3d::Zero();     ///< a rest point in the piece
+  Vec3d translate = Vec3d::Zero(); ///< mm
+  Vec3d axis{0, 0, 1};             ///< of the turn, any length above 0
+  double angle = 0;                ///< radians
+  std::optional<Vec3d> about;      ///< a world point on the axis; none: the piece's centroid where it stands
+};
+
+/// A whole recipe. Default options are the library's.
+struct Recipe {
+  std::string file = "recipe"; ///< what messages call it; not part of the document
+  std::string name;
+  SurfaceSource surface;
+  TetrahedralizeOptions tetrahedralize;
+  std::vector<Solid> solids;   ///< regions without a solid become plain grey
+  std::vector<CutStep> cuts;   ///< a fold: each works on what the earlier ones left
+  std::vector<MoveStep> moves; ///< a fold, after all cuts
+  std::optional<View> view;    ///< where to look from, for pictures
+  std::string scene;           ///< a scene file for pictures, relative to the recipe's folder; may be empty
+};
+
+/// Reads JSON text. `file` is what messages call it. Errors: InvalidInput, naming the place as a path into the
+/// document
+/// ("kiwi.json: /solids/0/depth/1/value: is 2, must be 0 to 1; ..."), for text that is not JSON, unknown or repeated
+/// keys, wrong types, missing keys, numbers out of range and constraints that contradict one another.
+Recipe parse_recipe(const std::string& text, const std::string& file);
+
+/// Reads a recipe file; messages call it by its file name. Errors: IoFailure when it cannot be read, and the above.
+Recipe read_recipe(const std::filesystem::path& path);
+
+/// Reads one cut (an entry of "cuts") from JSON text. Errors as for recipes.
+CutStep parse_cut(const std::string& text, const std::string& file);
+
+/// Reads a view from JSON text. Errors as for recipes.
+View parse_view(const std::string& text, const std::string& file);
+
+/// The recipe as canonical JSON: fixed order of keys, shortest numbers that read back alike, a line feed at the end.
+/// parse_recipe(recipe_text(r)) says the same as r, and writes the same text again.
+std::string recipe_text(const Recipe& recipe);
+
+} // namespace pith

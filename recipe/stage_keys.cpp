@@ -1,0 +1,88 @@
+#include "recipe/stage_keys.h"
+
+namespace pith {
+namespace {
+
+void add_view(KeyMaker& maker, const View& view) {
+  maker.add(view.eye).add(view.target).add(view.up).add(view.vertical_angle).add(view.height);
+}
+
+} // namespace
+
+KeyMaker& add(KeyMaker& maker, const TetrahedralizeOptions& options) {
+  return maker.add(static_cast<int>(options.method))
+      .add(options.interior_edge)
+      .add(options.boundary_edge)
+      .add(options.radius_edge)
+      .add(options.wrap_alpha)
+      .add(options.wrap_offset)
+      .add(options.time_limit);
+}
+
+KeyMaker& add(KeyMaker& maker, const std::vector<DepthConstraint>& constraints) {
+  maker.add(static_cast<std::uint64_t>(constraints.size()));
+  for (const DepthConstraint& one : constraints) {
+    maker.add(one.value).add(one.skin).add(one.stroke).add(static_cast<std::uint64_t>(one.triangles.size()));
+    for (const TriangleId triangle : one.triangles) maker.add(static_cast<std::uint64_t>(triangle.value));
+  }
+  return maker;
+}
+
+KeyMaker& add(KeyMaker& maker, const DepthOptions& options) {
+  return maker.add(options.max_centers).add(options.stroke_spacing);
+}
+
+KeyMaker& add(KeyMaker& maker, const std::vector<AxisStroke>& strokes) {
+  maker.add(static_cast<std::uint64_t>(strokes.size()));
+  for (const AxisStroke& stroke : strokes) maker.add(stroke.point);
+  return maker;
+}
+
+KeyMaker& add(KeyMaker& maker, const FrameOptions& options) {
+  return maker.add(options.layer_width)
+      .add(options.singular_sine)
+      .add(options.smallest_scale)
+      .add(options.largest_scale);
+}
+
+KeyMaker& add(KeyMaker& maker, const LapOptions& options) {
+  const SplotchOptions& mask = options.splotch;
+  return maker.add(static_cast<int>(options.type))
+      .add(options.seed)
+      .add(options.frame_tolerance)
+      .add(options.coverage_order)
+      .add(options.max_rounds)
+      .add(mask.axes)
+      .add(mask.resolution)
+      .add(mask.radius)
+      .add(mask.radius_along)
+      .add(mask.drop_off)
+      .add(mask.irregularity)
+      .add(mask.variation_axis)
+      .add(mask.seed);
+}
+
+KeyMaker& add(KeyMaker& maker, const CutStep& step) {
+  maker.add(static_cast<std::uint64_t>(step.shape.index()));
+  if (const auto* plane = std::get_if<PlaneCut>(&step.shape)) maker.add(plane->normal).add(plane->offset);
+  if (const auto* sphere = std::get_if<SphereCut>(&step.shape)) maker.add(sphere->center).add(sphere->radius);
+  if (const auto* stroke = std::get_if<StrokeCut>(&step.shape)) {
+    maker.add(stroke->point);
+    add_view(maker, stroke->view);
+  }
+  maker.add(static_cast<int>(step.keep)).add(step.spread).add(step.snap).add(step.only);
+  maker.add(static_cast<std::uint64_t>(step.placements.size()));
+  for (const PiecePlacement& stood : step.placements) {
+    maker.add(stood.piece).add(stood.placement.translation);
+    for (int column = 0; column < 3; ++column) maker.add(Vec3d(stood.placement.rotation.col(column)));
+  }
+  return maker;
+}
+
+KeyMaker& add(KeyMaker& maker, const MoveStep& step) {
+  maker.add(step.piece).add(step.translate).add(step.axis).add(step.angle).add(step.about.has_value());
+  if (step.about) maker.add(*step.about);
+  return maker;
+}
+
+} // namespace pith

@@ -1,0 +1,17 @@
+#pragma once
+// The options of each stage as parts of a key: every field that can change the result, none that cannot.
+#include "recipe/key.h"
+#include "recipe/recipe.h"
+
+namespace pith {
+
+KeyMaker& add(KeyMaker& maker, const TetrahedralizeOptions& options);
+KeyMaker& add(KeyMaker& maker, const std::vector<DepthConstraint>& constraints);
+KeyMaker& add(KeyMaker& maker, const DepthOptions& options);
+KeyMaker& add(KeyMaker& maker, const std::vector<AxisStroke>& strokes);
+KeyMaker& add(KeyMaker& maker, const FrameOptions& options);
+KeyMaker& add(KeyMaker& maker, const LapOptions& options);
+KeyMaker& add(KeyMaker& maker, const CutStep& step);
+KeyMaker& add(KeyMaker& maker, const MoveStep& step);
+
+} // namespace pith

@@ -1,0 +1,124 @@
+#include "recipe/steps.h"
+
+#include "volume/base/error.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <sstream>
+
+namespace pith {
+namespace {
+
+std::string text_of(const Vec3d& x) {
+  std::ostringstream text;
+  text << "(" << x.x() << ", " << x.y() << ", " << x.z() << ")";
+  return text.str();
+}
+
+std::unique_ptr<LevelSet> level_set_of(const CutStep& step, const std::string& where) {
+  if (const auto* plane = std::get_if<PlaneCut>(&step.shape)) return level_set_of(*plane, where + "/plane");
+  if (const auto* sphere = std::get_if<SphereCut>(&step.shape)) return level_set_of(*sphere, where + "/sphere");
+  return level_set_of(std::get<StrokeCut>(step.shape), where + "/stroke");
+}
+
+} // namespace
+
+std::uint32_t piece_named(const Pieces& pieces, const TetMesh& root, const Locator& locator, const Vec3d& point,
+                          const std::string& where) {
+  const Location location = locator.locate(point);
+  if (!location.inside)
+    throw InvalidInput(where, text_of(point) + " lies outside the solid", "name a piece by a rest point inside it");
+  const std::uint32_t piece = piece_at(pieces, root, location.tet, point);
+  if (piece >= pieces.piece.size())
+    throw InvalidInput(where, text_of(point) + " lies in a part that an earlier cut took away",
+                       "name a piece that is still there");
+  return piece;
+}
+
+Vec3d rest_point_in(const Pieces& pieces, std::uint32_t piece, const TetMesh& root) {
+  const auto whole = std::find(pieces.label.begin(), pieces.label.end(), piece);
+  if (whole != pieces.label.end()) return barycenter(root, TetId(whole - pieces.label.begin()));
+  double largest = -1;
+  Vec3d result = Vec3d::Zero();
+  for (const CutTet& tet : pieces.piece[piece].cut) {
+    const Vec3d &a = pieces.position(root, tet.corner[0]), &b = pieces.position(root, tet.corner[1]),
+                &c = pieces.position(root, tet.corner[2]), &d = pieces.position(root, tet.corner[3]);
+    const double volume = (b - a).cross(c - a).dot(d - a);
+    if (volume > largest) largest = volume, result = 0.25 * (a + b + c + d);
+  }
+  return result;
+}
+
+CutResult apply_cut(Pieces& pieces, const TetMesh& root, const Boundary& boundary, const Locator& locator,
+                    const CutStep& step, const std::string& where) {
+  const std::unique_ptr<LevelSet> level_set = level_set_of(step, where);
+  Pieces work = pieces;
+  for (std::size_t i = 0; i < step.placements.size(); ++i) {
+    const PiecePlacement& stood = step.placements[i];
+    const std::string at = where + "/placements/" + std::to_string(i) + "/piece";
+    work.piece[piece_named(work, root, locator, stood.piece, at)].placement = stood.placement;
+  }
+  CutOptions options{.only = {}, .snap = step.snap};
+  for (std::size_t i = 0; i < step.only.size(); ++i) {
+    const std::string at = where + "/only" + (step.only.size() > 1 ? "/" + std::to_string(i) : "");
+    const std::uint32_t piece = piece_named(work, root, locator, step.only[i], at);
+    if (std::find(options.only.begin(), options.only.end(), piece) == options.only.end())
+      options.only.push_back(piece);
+  }
+  std::sort(options.only.begin(), options.only.end());
+
+  CutResult result;
+  try {
+    result = cut(work, root, boundary, *level_set, options);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(where, std::string("cannot be made (") + error.what() + ")",
+                       "move the cut so that it passes through the solid");
+  }
+  if (step.spread > 0) spread(work, result, root, step.spread);
+
+  if (step.keep != Keep::both) {
+    const int kept_side = step.keep == Keep::left ? -1 : 1;
+    std::vector<std::uint32_t> keep;
+    for (std::uint32_t piece = 0; piece < work.piece.size(); ++piece) {
+      const CutResult::Origin& origin = result.origin[piece];
+      int side = origin.side;
+      const bool in_scope =
+          options.only.empty() || std::binary_search(options.only.begin(), options.only.end(), origin.piece);
+      // A piece that the cut left whole stands on one side of it.
+      if (side == 0 && in_scope)
+        side = level_set->value(work.piece[piece].placement(rest_point_in(work, piece, root))) < 0 ? -1 : 1;
+      if (side == 0 || side == kept_side) keep.push_back(piece);
+    }
+    if (keep.empty()) throw InvalidInput(where, "keeps nothing", "keep the other side");
+    CutResult kept{{}, result.tets_cut};
+    for (const std::uint32_t piece : keep) kept.origin.push_back(result.origin[piece]);
+    keep_pieces(work, root, keep);
+    result = std::move(kept);
+  }
+  pieces = std::move(work);
+  return result;
+}
+
+void apply_move(Pieces& pieces, const TetMesh& root, const Locator& locator, const MoveStep& step,
+                const std::string& where) {
+  const std::uint32_t piece = piece_named(pieces, root, locator, step.piece, where + "/piece");
+  Rigid& placement = pieces.piece[piece].placement;
+  if (step.angle != 0) {
+    const Vec3d center = step.about ? *step.about : placement(measure(pieces, piece, root).centroid);
+    const Mat3d turn = Eigen::AngleAxisd(step.angle, step.axis.normalized()).toRotationMatrix();
+    placement.rotation = turn * placement.rotation;
+    placement.translation = turn * (placement.translation - center) + center;
+  }
+  placement.translation += step.translate;
+}
+
+void append_cut(Recipe& recipe, CutStep step, const Pieces& pieces_before, const TetMesh& root) {
+  if (!recipe.moves.empty() && step.placements.empty()) {
+    for (std::uint32_t piece = 0; piece < pieces_before.piece.size(); ++piece)
+      step.placements.push_back({rest_point_in(pieces_before, piece, root), pieces_before.piece[piece].placement});
+    recipe.moves.clear();
+  }
+  recipe.cuts.push_back(std::move(step));
+}
+
+} // namespace pith

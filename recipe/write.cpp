@@ -1,0 +1,216 @@
+// Recipe: canonical JSON. Keys stand in the order of docs/recipe.md; options that equal the library's defaults are
+// left out, so that a recipe says what its author decided.
+#include "recipe/recipe.h"
+
+#include <nlohmann/json.hpp>
+
+namespace pith {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+json json_from(const Vec3d& v) { return json::array({v.x(), v.y(), v.z()}); }
+json json_from(const Vec2d& v) { return json::array({v.x(), v.y()}); }
+template <class Point>
+json json_from(const std::vector<Point>& points) {
+  json result = json::array();
+  for (const Point& point : points) result.push_back(json_from(point));
+  return result;
+}
+
+/// Writes a value that differs from the default.
+template <class T>
+void put(json& into, const char* key, const T& value, const T& usual) {
+  if (!(value == usual)) into[key] = value;
+}
+void put_object(json& into, const char* key, json value) {
+  if (!value.empty()) into[key] = std::move(value);
+}
+
+json json_from(const TetrahedralizeOptions& options) {
+  const TetrahedralizeOptions usual;
+  json result = json::object();
+  const char* methods[] = {"automatic", "tetgen", "wrap"};
+  if (options.method != usual.method) result["method"] = methods[static_cast<int>(options.method)];
+  put(result, "interior_edge", options.interior_edge, usual.interior_edge);
+  put(result, "boundary_edge", options.boundary_edge, usual.boundary_edge);
+  put(result, "radius_edge", options.radius_edge, usual.radius_edge);
+  put(result, "wrap_alpha", options.wrap_alpha, usual.wrap_alpha);
+  put(result, "wrap_offset", options.wrap_offset, usual.wrap_offset);
+  put(result, "time_limit", options.time_limit, usual.time_limit);
+  return result;
+}
+
+json json_from(const DepthConstraint& constraint) {
+  json result = json::object();
+  if (constraint.skin) result["skin"] = true;
+  if (!constraint.triangles.empty()) {
+    json triangles = json::array();
+    for (const TriangleId t : constraint.triangles) triangles.push_back(t.value);
+    result["triangles"] = std::move(triangles);
+  }
+  if (!constraint.stroke.empty()) result["stroke"] = json_from(constraint.stroke);
+  result["value"] = constraint.value;
+  return result;
+}
+
+json json_from(const ExemplarSource& source) {
+  if (!source.file.empty()) return {{"file", source.file}};
+  return {{"procedural", source.procedural}, {"resolution", source.resolution}, {"seed", source.seed}};
+}
+
+json json_from(const SplotchOptions& mask) {
+  const SplotchOptions usual;
+  json result = json::object();
+  put(result, "resolution", mask.resolution, usual.resolution);
+  put(result, "radius", mask.radius, usual.radius);
+  put(result, "radius_along", mask.radius_along, usual.radius_along);
+  put(result, "drop_off", mask.drop_off, usual.drop_off);
+  put(result, "irregularity", mask.irregularity, usual.irregularity);
+  put(result, "seed", mask.seed, usual.seed);
+  return result;
+}
+
+json json_from(const FrameOptions& frame) {
+  const FrameOptions usual;
+  json result = json::object();
+  put(result, "layer_width", frame.layer_width, usual.layer_width);
+  put(result, "singular_sine", frame.singular_sine, usual.singular_sine);
+  put(result, "smallest_scale", frame.smallest_scale, usual.smallest_scale);
+  put(result, "largest_scale", frame.largest_scale, usual.largest_scale);
+  return result;
+}
+
+json json_from(const Solid& solid) {
+  json result = {{"region", solid.region}};
+  if (solid.kind == Solid::Kind::plain) {
+    result["type"] = "plain";
+    result["color"] = json_from(solid.color);
+    return result;
+  }
+  result["type"] = "2-b";
+  json depth = json::array();
+  for (const DepthConstraint& constraint : solid.depth) depth.push_back(json_from(constraint));
+  result["depth"] = std::move(depth);
+  json depth_options = json::object();
+  put(depth_options, "max_centers", solid.depth_options.max_centers, DepthOptions().max_centers);
+  put(depth_options, "stroke_spacing", solid.depth_options.stroke_spacing, DepthOptions().stroke_spacing);
+  put_object(result, "depth_options", std::move(depth_options));
+  json orientation = json::array();
+  for (const AxisStroke& stroke : solid.orientation) orientation.push_back({{"stroke", json_from(stroke.point)}});
+  result["orientation"] = std::move(orientation);
+  put_object(result, "frame", json_from(solid.frame));
+  result["exemplar"] = json_from(solid.exemplar);
+  put_object(result, "mask", json_from(solid.fill.splotch));
+  const LapOptions usual;
+  json fill = json::object();
+  put(fill, "frame_tolerance", solid.fill.frame_tolerance, usual.frame_tolerance);
+  put(fill, "coverage_order", solid.fill.coverage_order, usual.coverage_order);
+  put(fill, "max_rounds", solid.fill.max_rounds, usual.max_rounds);
+  put_object(result, "fill", std::move(fill));
+  result["seed"] = solid.fill.seed;
+  return result;
+}
+
+json json_from(const View& view) {
+  json result = {{"eye", json_from(view.eye)}, {"target", json_from(view.target)}, {"up", json_from(view.up)}};
+  result["vertical_angle"] = view.vertical_angle;
+  put(result, "height", view.height, View().height);
+  return result;
+}
+
+json json_from(const CutStep& cut) {
+  json result = json::object();
+  if (const auto* plane = std::get_if<PlaneCut>(&cut.shape))
+    result["plane"] = {{"normal", json_from(plane->normal)}, {"offset", plane->offset}};
+  if (const auto* sphere = std::get_if<SphereCut>(&cut.shape))
+    result["sphere"] = {{"center", json_from(sphere->center)}, {"radius", sphere->radius}};
+  if (const auto* stroke = std::get_if<StrokeCut>(&cut.shape))
+    result["stroke"] = {{"points", json_from(stroke->point)}, {"view", json_from(stroke->view)}};
+  if (cut.keep != Keep::both) result["keep"] = cut.keep == Keep::left ? "left" : "right";
+  put(result, "spread", cut.spread, 0.0);
+  put(result, "snap", cut.snap, CutStep().snap);
+  if (!cut.only.empty()) result["only"] = json_from(cut.only);
+  if (!cut.placements.empty()) {
+    json placements = json::array();
+    for (const PiecePlacement& one : cut.placements) {
+      const Mat3d& r = one.placement.rotation;
+      json entry = {{"piece", json_from(one.piece)}};
+      if (r != Mat3d::Identity())
+        entry["rotation"] = {json_from(Vec3d(r.row(0))), json_from(Vec3d(r.row(1))), json_from(Vec3d(r.row(2)))};
+      entry["translation"] = json_from(one.placement.translation);
+      placements.push_back(std::move(entry));
+    }
+    result["placements"] = std::move(placements);
+  }
+  return result;
+}
+
+json json_from(const MoveStep& move) {
+  json result = {{"piece", json_from(move.piece)}, {"translate", json_from(move.translate)}};
+  if (move.angle != 0) {
+    result["rotate"] = {{"axis", json_from(move.axis)}, {"angle", move.angle}};
+    if (move.about) result["about"] = json_from(*move.about);
+  }
+  return result;
+}
+
+template <class T>
+void put_list(json& into, const char* key, const std::vector<T>& entries) {
+  if (entries.empty()) return;
+  json list = json::array();
+  for (const T& entry : entries) list.push_back(json_from(entry));
+  into[key] = std::move(list);
+}
+
+bool flat(const json& value) {
+  for (const json& entry : value)
+    if (entry.is_structured()) return false;
+  return true;
+}
+
+/// Lists of numbers on one line, everything else indented by two.
+void print(const json& value, int indent, std::string& text) {
+  if (!value.is_structured() || value.empty() || (value.is_array() && flat(value))) {
+    if (!value.is_array() || value.empty()) {
+      text += value.dump();
+      return;
+    }
+    text += '[';
+    for (std::size_t i = 0; i < value.size(); ++i) text += (i ? ", " : "") + value[i].dump();
+    text += ']';
+    return;
+  }
+  const std::string margin(indent + 2, ' ');
+  const bool object = value.is_object();
+  text += object ? "{\n" : "[\n";
+  bool first = true;
+  for (const auto& entry : value.items()) {
+    if (!first) text += ",\n";
+    first = false;
+    text += margin;
+    if (object) text += json(entry.key()).dump() + ": ";
+    print(entry.value(), indent + 2, text);
+  }
+  text += '\n' + std::string(indent, ' ') + (object ? '}' : ']');
+}
+
+} // namespace
+
+std::string recipe_text(const Recipe& recipe) {
+  json document = {{"pith", 1}};
+  if (!recipe.name.empty()) document["name"] = recipe.name;
+  document["surface"] = {{"file", recipe.surface.file}};
+  put(document["surface"], "scale", recipe.surface.scale, 1.0);
+  put_object(document, "tetrahedralize", json_from(recipe.tetrahedralize));
+  put_list(document, "solids", recipe.solids);
+  put_list(document, "cuts", recipe.cuts);
+  put_list(document, "moves", recipe.moves);
+  if (recipe.view) document["view"] = json_from(*recipe.view);
+  if (!recipe.scene.empty()) document["scene"] = recipe.scene;
+  std::string text;
+  print(document, 0, text);
+  return text + "\n";
+}
+
+} // namespace pith
