@@ -1,8 +1,21 @@
-# The programs: pith itself, the TetGen helper that runs in a process of its own, and the image module that is opened
-# only when an image is read or written.
+# The programs: pith itself, the TetGen helper that runs in a process of its own, and the modules that are opened only when
+# an image or a volume is read or written.
 
 # TetGen in a process of its own: its error paths end the process (docs/design.md).
 if(EXISTS ${PROJECT_SOURCE_DIR}/volume/mesh/tetgen_helper/main.cpp)
   add_executable(pith-tetgen volume/mesh/tetgen_helper/main.cpp)
   target_link_libraries(pith-tetgen PRIVATE pith_options tetgen)
 endif()
+
+# Modules beside the program. Their libraries take 30 ms (OpenVDB) and 200 ms (OpenImageIO) to load, so the program does
+# without them until it needs one.
+foreach(module image:pith-images vdb:pith-vdb)
+  string(REPLACE ":" ";" module ${module})
+  list(GET module 0 folder)
+  list(GET module 1 target)
+  add_library(${target} MODULE volume/io/${folder}_module/${folder}_module.cpp)
+  set_target_properties(${target} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}
+    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+endforeach()
+target_link_libraries(pith-images PRIVATE pith_options PkgConfig::OpenImageIO)
+target_link_libraries(pith-vdb PRIVATE pith_options OpenVDB::openvdb)

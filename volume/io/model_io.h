@@ -20,6 +20,9 @@
 
 namespace pith {
 
+/// What this program writes; it reads this and every earlier one.
+inline constexpr int model_format_version = 1;
+
 /// Everything in the file.
 struct ModelFile {
   Model model;

@@ -1,0 +1,107 @@
+#include "volume/io/atomic_file.h"
+
+#include "volume/base/error.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace pith {
+
+namespace {
+
+constexpr int attempts = 1000; // names tried beside the file; others belong to writers that were killed, or run now
+
+} // namespace
+
+AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path_, error);
+  if (std::filesystem::is_directory(status)) throw IoFailure(path_.string(), "is a folder; name a file");
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    throw IoFailure(path_.string(), "is not an ordinary file; name one");
+  if (std::filesystem::is_symlink(std::filesystem::symlink_status(path_, error))) {
+    const auto target = std::filesystem::weakly_canonical(path_, error);
+    if (!error) path_ = target;
+  }
+  if (path_.filename().empty()) throw IoFailure(path_.string(), "names no file");
+
+  for (int i = 0; i < attempts; ++i) {
+    const std::string name =
+        "." + path_.stem().string() + "." + std::to_string(::getpid()) + "-" + std::to_string(i) + ".part";
+    beside_ = path_.parent_path() / (name + path_.extension().string());
+    descriptor_ = ::open(beside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ >= 0) return;
+    if (errno != EEXIST) break;
+  }
+  throw IoFailure(path_.string(), std::string("cannot be written: ") + std::strerror(errno));
+}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ < 0) return;
+  ::close(descriptor_);
+  ::unlink(beside_.c_str());
+}
+
+void AtomicFile::write(const void* data, std::size_t bytes) {
+  const char* at = static_cast<const char*>(data);
+  while (bytes > 0) {
+    const ssize_t written = ::write(descriptor_, at, bytes);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0)
+      throw IoFailure(path_.string(),
+                      std::string("cannot be written: ") + std::strerror(written < 0 ? errno : ENOSPC));
+    at += written;
+    bytes -= static_cast<std::size_t>(written);
+  }
+}
+
+void AtomicFile::commit() {
+  const int closed = ::close(descriptor_);
+  const int reason = errno;
+  descriptor_ = -1;
+  if (closed != 0) {
+    ::unlink(beside_.c_str());
+    throw IoFailure(path_.string(), std::string("cannot be written: ") + std::strerror(reason));
+  }
+  if (std::rename(beside_.c_str(), path_.c_str()) != 0) {
+    const int refused = errno;
+    ::unlink(beside_.c_str());
+    throw IoFailure(path_.string(), std::string("cannot be put in place: ") + std::strerror(refused));
+  }
+}
+
+void write_file(const std::filesystem::path& path, std::string_view bytes) {
+  AtomicFile file(path);
+  file.write(bytes);
+  file.commit();
+}
+
+std::string file_content(const std::filesystem::path& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) throw IoFailure(path.string(), std::string("cannot be opened: ") + std::strerror(errno));
+  std::string content;
+  struct stat about {};
+  if (::fstat(descriptor, &about) == 0 && S_ISREG(about.st_mode)) content.reserve(std::size_t(about.st_size) + 1);
+  std::size_t filled = 0;
+  for (;;) {
+    content.resize(std::max(filled + 65536, content.capacity()));
+    const ssize_t got = ::read(descriptor, content.data() + filled, content.size() - filled);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) {
+      const int reason = errno;
+      ::close(descriptor);
+      throw IoFailure(path.string(), std::string("cannot be read: ") + std::strerror(reason));
+    }
+    if (got == 0) break;
+    filled += static_cast<std::size_t>(got);
+  }
+  ::close(descriptor);
+  content.resize(filled);
+  return content;
+}
+
+} // namespace pith
