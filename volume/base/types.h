@@ -1,6 +1,7 @@
 #pragma once
 // Vectors, strong ids and the arrays that they index. Lengths are millimetres, angles radians.
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <limits>
