@@ -8,7 +8,9 @@ namespace pith {
 struct CutOptions {
   /// Which pieces to cut; empty: all.
   std::vector<std::uint32_t> only;
-  /// Values within this fraction of an edge from a vertex are taken as exactly on it (0: only exact zeros).
+  /// Values within this fraction of an edge from a vertex are taken as exactly on it, and new vertices keep this far
+  /// from the ends of their edges: better tets for a section that is off by at most that fraction. From 0 to 0.4;
+  /// below 1e-6 counts as 1e-6, so that no tet degenerates.
   double snap = 0.01;
 };
 
@@ -19,25 +21,33 @@ struct CutResult {
     int side;
   };
   std::vector<Origin> origin;
-  std::size_t tets_cut = 0; ///< tets that the level set passed through
+  std::size_t tets_cut = 0; ///< tets that the level set passed through and that were subdivided
 };
 
-/// Cuts every piece p by φ(placement_p · x). A piece that lies on one side keeps its number; one that is cut becomes its
-/// left half (same number) and its right half (appended). New vertices are computed once per (edge, cut, placement), so
-/// both halves and all later cuts share their bits; the root's colours need no copy.
-/// Errors: InvalidInput when φ is not finite at some vertex, or when nothing is cut at all (the pieces stay unchanged).
-/// Cost: one φ per vertex of the pieces, plus work in proportion to the tets cut.
+/// Cuts every piece p by φ(placement_p · x). A piece that lies on one side stays as it is and keeps its number; one
+/// that is cut becomes its left half (φ < 0; same number) and its right half (appended, in the order of the pieces).
+/// New vertices are computed once per (edge, cut, placement), so both halves, pieces that stand together and all
+/// later cuts share their bits; the root's colours need no copy. Tets that lie on the section altogether go to the
+/// left. A face that lies on the section between two halves is tagged as section of this cut; the skin, interfaces
+/// between regions included, keeps its tags. Errors: InvalidInput when φ is not finite at some vertex, an option is
+/// out of range, or nothing is cut at all. The pieces are unchanged then. Cost: one φ per vertex of the pieces, one
+/// pass over the tets, plus work in proportion to the tets cut.
 CutResult cut(Pieces& pieces, const TetMesh& root, const Boundary& boundary, const LevelSet& level_set,
               const CutOptions& options = {});
 
-/// The same where the values are known already: `value[v]` for every vertex id of `pieces` (root, then added).
+/// The same where the values are known already: `value[v]` for every vertex id of `pieces` (root, then added). With a
+/// level set, new vertices are placed at its true zeros; without one, where the linear interpolation of the values is
+/// zero.
 CutResult cut_by_values(Pieces& pieces, const TetMesh& root, const Boundary& boundary, std::span<const double> value,
                         const LevelSet* level_set = nullptr, const CutOptions& options = {});
 
-/// Keeps the given pieces only, in that order; added vertices that nothing uses are dropped.
+/// Keeps the given pieces only, in that order; added vertices that nothing uses are dropped. Root tets of the others
+/// keep the label `was_cut`. Throws InvalidInput when `keep` is empty, names a piece twice or one that does not
+/// exist.
 void keep_pieces(Pieces& pieces, const TetMesh& root, std::span<const std::uint32_t> keep);
 
-/// Moves left halves and right halves of a fresh cut apart by `distance` mm along the mean section normal.
+/// Moves left halves and right halves of a fresh cut apart by `distance` mm (half each) along the mean section
+/// normal. Throws InvalidInput when the section is closed, so that no mean normal exists, or nothing was cut.
 void spread(Pieces& pieces, const CutResult& result, const TetMesh& root, double distance);
 
 } // namespace pith

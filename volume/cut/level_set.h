@@ -32,16 +32,24 @@ struct SphereCut {
   Vec3d center{0, 0, 0};
   double radius = 1;
 };
-/// A freeform stroke drawn on the screen, extruded along the view (Takayama 2008, §5.1.1). Points are screen coordinates
-/// (View). Seen along the direction of drawing, the left of the stroke is negative. Beyond its ends the stroke goes on
-/// straight.
+/// A freeform stroke drawn on the screen, extruded along the view (Takayama 2008, §5.1.1). Points are screen
+/// coordinates (View). Seen along the direction of drawing, the left of the stroke is negative. Beyond its ends the
+/// stroke goes on straight, in the direction of its last twentieth; if the two continuations meet, they end there.
+///
+/// φ(x) = s · (d + clamp(r − d, ±w)), where d is the signed distance to the stroke on the screen, r a thin-plate
+/// spline through at most 36 nodes of the stroke (0 there, ±offset beside them), w 1/144 of the stroke's length, and
+/// s the millimetres per screen unit at the depth of x. So the section is smooth where the spline follows the stroke,
+/// and farther than w from the stroke the sign of φ is that of d, whatever the spline does. Away from the stroke r
+/// fades out. A straight stroke is a plane. In perspective, points behind the eye are taken as just before it: the
+/// cut goes on there in the direction of sight.
 struct StrokeCut {
   std::vector<Vec2d> point;
   View view;
 };
 
-/// Throws InvalidInput (`where` names the field in the message) when the shape is degenerate: a zero normal, a radius that
-/// is not positive, a stroke of fewer than two distinct points, numbers that are not finite.
+/// Throws InvalidInput (`where` names the field in the message) when the shape is degenerate: a zero normal, a radius
+/// that is not positive, a stroke of fewer than two distinct points, one that crosses itself or its continuations, a
+/// view without direction, numbers that are not finite. Cost: a stroke ~0.3 ms (the spline), the others none.
 std::unique_ptr<LevelSet> level_set_of(const PlaneCut& plane, const std::string& where = "plane");
 std::unique_ptr<LevelSet> level_set_of(const SphereCut& sphere, const std::string& where = "sphere");
 std::unique_ptr<LevelSet> level_set_of(const StrokeCut& stroke, const std::string& where = "stroke");
