@@ -125,7 +125,29 @@ build() {
   built "${1:-release}"
 }
 
-demo() { fail "not yet"; }
+demo() {
+  [[ $# -eq 0 ]] || fail "demo takes no options" 2
+  build
+  local pith=build/release/pith out=build/demo
+  mkdir -p "$out"
+  step "making the kiwi"
+  "$pith" make data/recipes/kiwi.json -o "$out/kiwi.pith"
+  step "cutting it: across and along its axis, one half each; and into two halves that lie side by side"
+  "$pith" cut "$out/kiwi.pith" --stroke data/strokes/kiwi-across.json --keep left -o "$out/kiwi-across.pith"
+  "$pith" cut "$out/kiwi.pith" --stroke data/strokes/kiwi-along.json --keep left -o "$out/kiwi-along.pith"
+  "$pith" cut "$out/kiwi.pith" --stroke data/strokes/kiwi-across.json --spread 14 -o "$out/kiwi-halves.pith"
+  step "rendering"
+  local name
+  for name in kiwi kiwi-across kiwi-along kiwi-halves; do
+    "$pith" render "$out/$name.pith" -o "$out/$name.png" --size 800x600 --spp 64
+  done
+  echo
+  echo "The model:    $PWD/$out/kiwi.pith   (its pieces: kiwi-across.pith, kiwi-along.pith, kiwi-halves.pith beside it)"
+  echo "The pictures: $PWD/$out/kiwi.png          the whole fruit"
+  echo "              $PWD/$out/kiwi-across.png   cut across"
+  echo "              $PWD/$out/kiwi-along.png    cut along"
+  echo "              $PWD/$out/kiwi-halves.png   both halves"
+}
 
 # The test programs that run under the sanitizers: quick ones over the code that handles memory and files.
 sanitized=(test_base test_mesh test_field test_layer test_lap test_cut test_io)
