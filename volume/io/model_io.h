@@ -8,7 +8,8 @@
 //   field/depth|axes|scale|singular  where computed
 //   exemplar/N, mask/N             texels and alpha, each once however many layers share it; gaussian/N, inverse/N
 //   layer/N/corner|begin|simplex|lookup|patch|frame|key
-//   pieces/label|cut_begin|cut_corner|cut_root|cut_face|placement|edge|position|normal
+//   pieces/label|cut_begin|cut_corner|cut_root|cut_face|placement|edge|position|normal|
+//                                  section|section_normal
 //
 // The same model gives the same bytes: times in the zip are fixed.
 #include "volume/cut/piece.h"

@@ -118,6 +118,12 @@ Pieces pieces_of(const ZipReader& zip, const json& description, std::size_t vert
   zip.rows<std::uint32_t>("pieces/edge", pieces.added);
   zip.rows<double>("pieces/position", pieces.added_position);
   zip.rows<float>("pieces/normal", pieces.added_normal);
+  std::vector<std::array<std::uint32_t, 2>> section;
+  zip.rows<std::uint32_t>("pieces/section", section);
+  const auto section_normal = zip.array<float>("pieces/section_normal", {section.size(), 3});
+  for (std::size_t i = 0; i < section.size(); ++i)
+    pieces.on_section.push_back({VertexId(section[i][0]), CutId(section[i][1]),
+                                 Vec3f(section_normal[3 * i], section_normal[3 * i + 1], section_normal[3 * i + 2])});
 
   std::vector<std::uint32_t> begin, root;
   std::vector<std::array<VertexId, 4>> corner;

@@ -112,6 +112,15 @@ void add_pieces(ZipWriter& zip, Columns& columns, const Pieces& pieces) {
   zip.add_rows<std::uint32_t>("pieces/edge", pieces.added);
   zip.add_rows<double>("pieces/position", pieces.added_position);
   zip.add_rows<float>("pieces/normal", pieces.added_normal);
+
+  auto& section = columns.u4.emplace_back();
+  auto& section_normal = columns.f4.emplace_back();
+  for (const SectionNormal& known : pieces.on_section) {
+    section.insert(section.end(), {known.vertex, known.cut});
+    section_normal.insert(section_normal.end(), {known.normal.x(), known.normal.y(), known.normal.z()});
+  }
+  zip.add_array<std::uint32_t>("pieces/section", section, {pieces.on_section.size(), 2});
+  zip.add_array<float>("pieces/section_normal", section_normal, {pieces.on_section.size(), 3});
 }
 
 json json_of(const Box& box) {

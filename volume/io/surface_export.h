@@ -58,7 +58,7 @@ void write_ply(const std::filesystem::path& path, const ColoredSurface& surface)
 void write_obj(const std::filesystem::path& path, const ColoredSurface& surface, const std::string& name = "pith");
 /// Binary; no colour.
 void write_stl(const std::filesystem::path& path, const ColoredSurface& surface);
-/// Metres, y up (z up in millimetres becomes y up); one mesh per piece, COLOR_0 linear 16 bit.
+/// Metres, axes as they are (y is up in pith and in glTF); one mesh per piece, COLOR_0 linear 16 bit.
 void write_glb(const std::filesystem::path& path, const ColoredSurface& surface, const std::string& name = "pith");
 
 /// The tets of all pieces where they stand, for ParaView: points with `color` (linear); cells with `region`,
