@@ -25,6 +25,7 @@ struct SceneOptions {
   Vec3d up{0, 1, 0}; ///< away from the ground
   SurfaceLook skin{.roughness = 0.7};
   SurfaceLook section{.roughness = 0.28};
+  double crease = 0.8;            ///< radians: skin facets that meet at a larger angle keep a sharp edge
   Vec3d uncovered{0.5, 0.5, 0.5}; ///< colour where the material's coverage is below 1
   GroundOptions ground;
 };
@@ -89,7 +90,8 @@ public:
   std::size_t triangle_count() const; ///< triangles that rays can meet
   /// Corners of every triangle that rays can meet, placed: to frame a view. World.
   const std::vector<Vec3d>& points() const;
-  /// Σ area · unit outward normal over the sections that can be seen, and Σ area; world. Zero where nothing is cut.
+  /// The largest Σ area · outward normal over the sections of one piece, world, mm²; zero where nothing is cut. And
+  /// the area of all sections together.
   const Vec3d& section_direction() const;
   double section_area() const;
 
