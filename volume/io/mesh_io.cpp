@@ -1,12 +1,10 @@
 // Which reader and writer a mesh file gets, and what all of them check.
 #include "volume/io/mesh_io.h"
 
+#include "volume/io/atomic_file.h"
 #include "volume/io/mesh_io_formats.h"
 
-#include <cerrno>
-#include <fstream>
-#include <system_error>
-#include <unistd.h>
+#include <cmath>
 
 namespace pith {
 namespace {
@@ -20,19 +18,6 @@ std::string extension_of(const std::filesystem::path& path) {
   return extension;
 }
 
-std::string contents_of(const std::filesystem::path& path) {
-  if (std::filesystem::is_directory(path)) throw IoFailure(path.string(), "is a folder, not a mesh file");
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file) throw IoFailure(path.string(), "cannot be opened: " + std::generic_category().message(errno));
-  const std::streamoff size = file.tellg();
-  if (size < 0) throw IoFailure(path.string(), "cannot be read to its end");
-  std::string contents(static_cast<std::size_t>(size), '\0');
-  file.seekg(0);
-  file.read(contents.data(), size);
-  if (file.gcount() != size) throw IoFailure(path.string(), "cannot be read to its end");
-  return contents;
-}
-
 } // namespace
 
 TriMesh read_tri_mesh(const std::filesystem::path& path, double scale) {
@@ -42,7 +27,7 @@ TriMesh read_tri_mesh(const std::filesystem::path& path, double scale) {
                        "give a scale above 0");
   const bool known = extension == ".obj" || extension == ".off" || extension == ".ply" || extension == ".stl";
   if (!known) throw InvalidInput(name, "there is no reader for '" + extension + "'", use_known);
-  const std::string contents = contents_of(path);
+  const std::string contents = file_content(path);
   if (contents.empty()) throw InvalidInput(name, "the file is empty", "export the mesh again");
 
   TriMesh mesh = extension == ".obj"   ? mesh_format::read_obj(contents, name)
@@ -76,26 +61,7 @@ void write_tri_mesh(const std::filesystem::path& path, const TriMesh& mesh) {
   else
     throw InvalidInput(path.string(), "there is no writer for '" + extension + "'", use_known);
 
-  // Written beside, then renamed: the file appears whole or not at all.
-  std::filesystem::path beside = path;
-  beside += ".part" + std::to_string(::getpid());
-  std::error_code ignored;
-  {
-    std::ofstream file(beside, std::ios::binary | std::ios::trunc);
-    if (!file) throw IoFailure(path.string(), "cannot be written: " + std::generic_category().message(errno));
-    file.write(contents.data(), static_cast<std::streamsize>(contents.size()));
-    file.close();
-    if (!file) {
-      std::filesystem::remove(beside, ignored);
-      throw IoFailure(path.string(), "cannot be written whole: is the disk full?");
-    }
-  }
-  std::error_code error;
-  std::filesystem::rename(beside, path, error);
-  if (error) {
-    std::filesystem::remove(beside, ignored);
-    throw IoFailure(path.string(), "cannot be written: " + error.message());
-  }
+  write_file(path, contents);
 }
 
 } // namespace pith

@@ -18,6 +18,8 @@ namespace pith {
 namespace {
 
 constexpr double most_tets = 100e6;
+constexpr double most_moved =
+    0.03; // of the diagonal: what cutting out faults may cost, before wrapping is the better way
 
 std::string short_number(double value) {
   char text[32];
@@ -30,6 +32,8 @@ void join(std::string& note, const std::string& more) {
   if (!note.empty()) note += "; ";
   note += more;
 }
+
+void comma(std::string& list, const std::string& more) { list += list.empty() ? more : ", " + more; }
 
 void check_input(const TriMesh& mesh, const std::string& name, const TetrahedralizeOptions& options) {
   if (mesh.corner.empty()) throw InvalidInput(name, "the surface has no triangles", "give a closed surface");
@@ -70,15 +74,33 @@ double area_of(const TriMesh& mesh) {
   return sum;
 }
 
+/// Turns the triangles of `original` to face away from material, as those of `ready` do once cavities are turned
+/// back.
+void face_away_from_material(const surface::Repaired& ready, const surface::Regions& regions, TriMesh& original) {
+  const auto area = [](const TriMesh& mesh, TriangleId triangle) {
+    const auto& c = mesh.corner[triangle];
+    return Vec3d((mesh.position[c[1]] - mesh.position[c[0]]).cross(mesh.position[c[2]] - mesh.position[c[0]]));
+  };
+  for (const TriangleId t : all_ids<TriangleId>(ready.mesh.triangle_count())) {
+    const TriangleId source = ready.source[t];
+    const bool against = area(ready.mesh, t).dot(area(original, source)) < 0;
+    const bool cavity = regions.region[regions.shell[t]] < 0;
+    if (against != cavity) std::swap(original.corner[source][1], original.corner[source][2]);
+  }
+}
+
 /// Tets inside a clean surface; fills `mesh` and `input` of the result. Returns why not, or nothing.
 std::string fill_clean(surface::Repaired ready, const std::string& name, const TetrahedralizeOptions& options,
                        const Progress& progress, TetrahedralizeResult& result) {
+  surface::drop_unused_vertices(ready.mesh);
   if (options.boundary_edge > 0) surface::split_long_edges(ready, options.boundary_edge, name);
   std::size_t turned = 0;
   const surface::Regions regions = surface::outward_with_regions(ready.mesh, turned);
   if (turned > 0)
     join(result.note,
          std::to_string(turned) + (turned == 1 ? " shell was" : " shells were") + " inside out and turned");
+
+  face_away_from_material(ready, regions, result.surface);
 
   double edge = options.interior_edge;
   if (edge == 0) edge = std::min(12 * mean_edge(ready.mesh), bounds_of(ready.mesh).diagonal() / 12);
@@ -127,19 +149,6 @@ std::string fill_clean(surface::Repaired ready, const std::string& name, const T
   return failure;
 }
 
-/// Material is outwards-facing in what the caller gets: triangles that were turned are turned in the copy too.
-void orient_as(const surface::Repaired& ready, TriMesh& original) {
-  for (const TriangleId t : all_ids<TriangleId>(ready.mesh.triangle_count())) {
-    const auto area = [](const TriMesh& mesh, TriangleId triangle) {
-      const auto& c = mesh.corner[triangle];
-      return Vec3d((mesh.position[c[1]] - mesh.position[c[0]]).cross(mesh.position[c[2]] - mesh.position[c[0]]));
-    };
-    const TriangleId source = ready.source[t];
-    if (area(ready.mesh, t).dot(area(original, source)) < 0)
-      std::swap(original.corner[source][1], original.corner[source][2]);
-  }
-}
-
 /// A wrap that has an inside worth the name, with a wider alpha where the surface's holes let the wrap in.
 TriMesh solid_wrap(const TriMesh& mesh, const std::string& name, const TetrahedralizeOptions& options,
                    double& alpha_used) {
@@ -159,7 +168,8 @@ TriMesh solid_wrap(const TriMesh& mesh, const std::string& name, const Tetrahedr
       "give a closed surface");
 }
 
-void mesh_wrap(const TriMesh& mesh, const std::string& name, const std::string& reason,
+/// `original` is what distances are measured from; `mesh`, the same with its holes closed, is what is wrapped.
+void mesh_wrap(const TriMesh& original, const TriMesh& mesh, const std::string& name, const std::string& reason,
                const TetrahedralizeOptions& options, const Progress& progress, TetrahedralizeResult& result) {
   double alpha = 0;
   report(progress, 0.05);
@@ -167,12 +177,12 @@ void mesh_wrap(const TriMesh& mesh, const std::string& name, const std::string& 
   report(progress, 0.4);
   result.surface = wrap;
   result.method = "wrap";
-  result.surface_moved = wrap::largest_distance(mesh, wrap);
+  result.surface_moved = wrap::largest_distance(original, wrap);
   result.note = reason;
   join(result.note, "wrapped instead, closing holes up to " + short_number(alpha) +
                         " mm: the surface moved by up to " + short_number(result.surface_moved) +
                         " mm, and no part of the new one is farther than " +
-                        short_number(wrap::largest_distance(wrap, mesh)) + " mm from the old");
+                        short_number(wrap::largest_distance(wrap, original)) + " mm from the old");
   surface::Repaired ready;
   for (const TriangleId t : all_ids<TriangleId>(wrap.triangle_count())) ready.source.push_back(t);
   ready.mesh = std::move(wrap);
@@ -188,7 +198,7 @@ TetrahedralizeResult tetrahedralize(const TriMesh& input, const std::string& nam
                                     const TetrahedralizeOptions& options, const Progress& progress) {
   check_input(input, name, options);
   report(progress, 0);
-  const surface::Repaired ready = surface::repaired(input);
+  surface::Repaired ready = surface::repaired(input);
   const PerTriangle<char> collinear = surface::collinear_triangles(ready.mesh);
   if (std::count(collinear.begin(), collinear.end(), 1) == std::ptrdiff_t(collinear.size()))
     throw InvalidInput(name, "all of its " + std::to_string(input.triangle_count()) + " triangles are degenerate",
@@ -197,29 +207,50 @@ TetrahedralizeResult tetrahedralize(const TriMesh& input, const std::string& nam
   TetrahedralizeResult result;
   using Method = TetrahedralizeOptions::Method;
   if (options.method == Method::wrap) {
-    mesh_wrap(ready.mesh, name, "a wrap was asked for", options, progress, result);
+    mesh_wrap(input, ready.mesh, name, "a wrap was asked for", options, progress, result);
     return result;
   }
   SurfaceDefects defects = surface_defects(ready.mesh);
-  defects.inside_out_shells = 0; // turned below
-  defects.volume = 1;            // closed and free of self-intersections, each shell has one, whatever its sign
-  std::string reason;
-  if (defects.clean()) {
+  if (!surface::can_be_filled(defects) && options.method == Method::tetgen)
+    throw InvalidInput(name, "the surface has " + defects.summary(), "repair the surface, or allow pith to mend it");
+  const std::string fault = surface::can_be_filled(defects) ? "" : "the surface has " + defects.summary();
+  std::string mended = ready.note;
+  double widest = 0;
+  if (const std::size_t holes = defects.border_edges > 0 ? surface::close_holes(ready, widest) : 0; holes > 0) {
+    surface::mend(ready);
+    comma(mended, (holes == 1 ? "1 hole" : std::to_string(holes) + " holes") + " closed, up to " +
+                      short_number(widest) + " mm across");
+    defects = surface_defects(ready.mesh);
+  }
+  const surface::Repaired uncut = ready;
+  double moved = 0;
+  if (!surface::can_be_filled(defects)) {
+    if (const std::size_t cut_out = surface::cut_out_faults(ready); cut_out > 0) {
+      moved = wrap::largest_distance(input, ready.mesh);
+      if (moved <= most_moved * bounds_of(input).diagonal()) {
+        defects = surface_defects(ready.mesh);
+        comma(mended, std::to_string(cut_out) +
+                          " triangles at fault cut out and closed, which moved the surface by up to " +
+                          short_number(moved) + " mm");
+      }
+    }
+  }
+
+  std::string reason = fault;
+  if (surface::can_be_filled(defects)) {
     result.surface = input;
     result.method = "tetgen";
-    if (!ready.note.empty()) result.note = "mended in place: " + ready.note;
-    orient_as(ready, result.surface);
+    result.note = fault;
+    if (!mended.empty()) join(result.note, "mended in place: " + mended);
+    surface::append_added(ready, result.surface);
+    result.surface_moved = moved;
     const std::string failure = fill_clean(ready, name, options, progress, result);
     if (failure.empty()) return result;
     if (options.method == Method::tetgen) throw SolverFailure(name + ": " + failure, 0);
-    reason = failure;
-  } else {
-    reason = "the surface has " + defects.summary();
-    if (options.method == Method::tetgen)
-      throw InvalidInput(name, reason, "repair the surface, or allow it to be wrapped");
+    join(reason, failure);
   }
   result = {};
-  mesh_wrap(ready.mesh, name, reason, options, progress, result);
+  mesh_wrap(input, uncut.mesh, name, reason, options, progress, result);
   return result;
 }
 

@@ -162,6 +162,37 @@ void add_note(std::string& note, std::size_t count, const char* one, const char*
 
 } // namespace
 
+void mend(Repaired& surface) {
+  const std::size_t duplicates = drop_duplicates(surface);
+  const std::size_t flipped = flip_collinear(surface);
+  const std::size_t scrambled = orient(surface.mesh);
+  add_note(surface.note, duplicates, "duplicate triangle dropped", "duplicate triangles dropped");
+  add_note(surface.note, flipped, "triangle of no area replaced", "triangles of no area replaced");
+  add_note(surface.note, scrambled, "shell oriented", "shells oriented");
+}
+
+bool can_be_filled(SurfaceDefects defects) {
+  defects.inside_out_shells = 0;
+  defects.volume = 1; // closed and free of self-intersections, each shell has one, whatever its sign
+  return defects.clean();
+}
+
+void drop_unused_vertices(TriMesh& mesh) {
+  PerVertex<VertexId> number(mesh.vertex_count());
+  for (const auto& corner : mesh.corner)
+    for (const VertexId v : corner) number[v] = VertexId(0u);
+  VertexId next(0u);
+  for (const VertexId v : all_ids<VertexId>(mesh.vertex_count())) {
+    if (!number[v].exists()) continue;
+    mesh.position[next] = mesh.position[v];
+    number[v] = next;
+    next = VertexId(next + 1);
+  }
+  mesh.position.resize(next);
+  for (auto& corner : mesh.corner)
+    for (VertexId& v : corner) v = number[v];
+}
+
 Repaired repaired(const TriMesh& mesh) {
   Repaired result;
   TriMesh numbered = mesh; // `part` carries the triangle's number through the weld
@@ -171,15 +202,9 @@ Repaired repaired(const TriMesh& mesh) {
   result.mesh = welded(numbered);
   for (const std::int32_t t : result.mesh.part) result.source.push_back(TriangleId(static_cast<std::uint32_t>(t)));
   result.mesh.part.clear();
-
-  const std::size_t collapsed = mesh.triangle_count() - result.mesh.triangle_count();
-  const std::size_t duplicates = drop_duplicates(result);
-  const std::size_t flipped = flip_collinear(result);
-  const std::size_t scrambled = orient(result.mesh);
-  add_note(result.note, collapsed, "collapsed triangle dropped", "collapsed triangles dropped");
-  add_note(result.note, duplicates, "duplicate triangle dropped", "duplicate triangles dropped");
-  add_note(result.note, flipped, "triangle of no area replaced", "triangles of no area replaced");
-  add_note(result.note, scrambled, "shell oriented", "shells oriented");
+  add_note(result.note, mesh.triangle_count() - result.mesh.triangle_count(), "collapsed triangle dropped",
+           "collapsed triangles dropped");
+  mend(result);
   return result;
 }
 
