@@ -229,7 +229,7 @@ TEST(Stroke, CutsABallAndTheSectionIsOnItsZeroSet) {
       for (std::size_t i = 0; i < pieces.added.size(); ++i) {
         if (pieces.added[i].cut != CutId(c)) continue;
         ++vertices;
-        exact += std::abs(level_set->value(pieces.added_position[i])) < 1e-6;
+        exact += std::abs(level_set->value(pieces.added_position[i])) < 1e-5;
       }
       EXPECT_GT(exact, vertices * 97 / 100);
     }

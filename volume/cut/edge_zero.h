@@ -35,8 +35,9 @@ private:
 };
 
 /// Where on the edge from a to b (rest space) the field is zero: a fraction in [snap, 1 − snap]. `value_a` and
-/// `value_b` have opposite signs. One linear step, then for a level set that is not linear up to ten steps of the
-/// Illinois method (Dowell, Jarratt 1971) until |φ| ≤ 1e-10 of the ends' values.
+/// `value_b` have opposite signs. One linear step; then, for a level set that is not linear, up to twelve steps of
+/// inverse quadratic interpolation inside a bracket (Brent 1973, §4.2, without his safeguards but bisection), ended
+/// when the error left is below about 1e-7 of the edge: two or three values.
 double zero_on_edge(const LevelSet* level_set, const Rigid& placement, const Vec3d& a, const Vec3d& b, double value_a,
                     double value_b, double snap);
 
