@@ -1,6 +1,6 @@
 // Rings of vertices around the axis, evenly spaced along the meridian and along each ring, are joined into strips of
-// triangles; then edges are flipped towards the Delaunay condition (Lawson 1977) and vertices move to the centroid of
-// their neighbours and back onto the shape, in turn, until the triangles are near-uniform.
+// triangles; then edges are flipped towards valence six and the Delaunay condition (Lawson 1977), and vertices move
+// to the centroid of their neighbours and back onto the shape, in turn, until the triangles are near-uniform.
 #include "volume/exemplar/kiwi_surface.h"
 
 #include "volume/base/error.h"
@@ -91,8 +91,12 @@ double cotangent(const Vec3d& at, const Vec3d& p, const Vec3d& q) {
   return u.dot(v) / u.cross(v).norm();
 }
 
-/// One sweep of Delaunay flips over all edges; returns how many edges were flipped.
-int flip_edges(const std::vector<Vec3d>& position, std::vector<std::array<std::uint32_t, 3>>& corner) {
+/// Which edges a sweep flips: those that bring valences nearer to six, or those that fail the Delaunay condition and
+/// keep valences within 5 to 7.
+enum class FlipFor { valence, delaunay };
+
+/// One sweep of flips over all edges; returns how many edges were flipped.
+int flip_edges(FlipFor aim, const std::vector<Vec3d>& position, std::vector<std::array<std::uint32_t, 3>>& corner) {
   struct Side {
     std::uint64_t edge;
     std::uint32_t triangle;
@@ -123,11 +127,18 @@ int flip_edges(const std::vector<Vec3d>& position, std::vector<std::array<std::u
       return low;
     };
     const std::uint32_t c = opposite(t), d = opposite(u);
-    if (cotangent(position[c], position[low], position[high]) +
-            cotangent(position[d], position[low], position[high]) >=
-        -1e-9)
-      continue;
-    if (valence[low] <= 5 || valence[high] <= 5 || valence[c] >= 7 || valence[d] >= 7) continue;
+    if (aim == FlipFor::valence) {
+      const auto surplus = [](int count) { return (count - 6) * (count - 6); };
+      const int before = surplus(valence[low]) + surplus(valence[high]) + surplus(valence[c]) + surplus(valence[d]);
+      const int after =
+          surplus(valence[low] - 1) + surplus(valence[high] - 1) + surplus(valence[c] + 1) + surplus(valence[d] + 1);
+      if (after >= before) continue;
+    } else {
+      if (valence[low] <= 5 || valence[high] <= 5 || valence[c] >= 7 || valence[d] >= 7) continue;
+      const double cotangents = cotangent(position[c], position[low], position[high]) +
+                                cotangent(position[d], position[low], position[high]);
+      if (cotangents >= -1e-9) continue;
+    }
     if (has_edge((std::uint64_t(std::min(c, d)) << 32) | std::max(c, d))) continue;
     // (a, b, c) runs through the edge a → b; the other triangle through b → a.
     const auto& corners = corner[t];
@@ -215,12 +226,16 @@ TriMesh kiwi_surface(int triangles) {
   for (int j = 0; j < rings.vertices.back(); ++j)
     corner.push_back({end, first.back() + (j + 1) % rings.vertices.back(), first.back() + j});
 
-  constexpr int rounds = 24;
-  for (int round = 0; round < rounds; ++round) {
-    flip_edges(position, corner);
+  constexpr int valence_rounds = 6, delaunay_rounds = 20, last_sweeps = 8;
+  for (int round = 0; round < valence_rounds; ++round) {
+    flip_edges(FlipFor::valence, position, corner);
     relax(position, corner);
   }
-  for (int sweep = 0; sweep < 8 && flip_edges(position, corner) > 0; ++sweep) {
+  for (int round = 0; round < delaunay_rounds; ++round) {
+    flip_edges(FlipFor::delaunay, position, corner);
+    relax(position, corner);
+  }
+  for (int sweep = 0; sweep < last_sweeps && flip_edges(FlipFor::delaunay, position, corner) > 0; ++sweep) {
   }
 
   TriMesh mesh;
