@@ -81,6 +81,7 @@ struct Scene::Parts {
   Box bounds;
   double ground_height = 0;
   double slack = 0;     ///< mm: the rounding of single-precision coordinates
+  double tie = 0;       ///< mm: hits in double that lie closer together are at the same place
   double clearance = 0; ///< mm: from a surface to where rays that leave it start
   std::size_t triangles = 0;
   std::vector<Vec3d> points;
@@ -134,6 +135,7 @@ Scene::Scene(const Root& root, const Pieces& pieces, const SceneOptions& options
     throw InvalidInput("pieces", "a placed point is not finite", "mend the placements");
   parts->center = parts->bounds.center();
   parts->slack = 1e-6 * parts->bounds.diagonal();
+  parts->tie = 1e-11 * (parts->bounds.diagonal() + parts->center.norm());
   parts->clearance = 1e-5 * parts->bounds.diagonal();
   parts->ground_height = std::isfinite(ground.height) ? ground.height : lowest;
   parts->color = root.component_of("color");
@@ -241,14 +243,17 @@ Hit Scene::nearest(const SceneRay& ray) const {
   single.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   if (close.to > 0) rtcIntersect1(parts.scene, &query.context, &single);
 
+  std::array<Hit, 16> hits;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < query.count; ++i) {
+    hits[i] = parts.hit_of(ray, query.candidate[i]);
+    least = std::min(least, hits[i].distance);
+  }
   Hit best;
   for (int i = 0; i < query.count; ++i) {
-    const Candidate& candidate = query.candidate[i];
-    const Hit hit = parts.hit_of(ray, candidate);
-    const bool nearer = hit.distance < best.distance;
-    const bool tie =
-        hit.distance == best.distance && std::tie(hit.piece, hit.triangle) < std::tie(best.piece, best.triangle);
-    if (nearer || tie) best = hit;
+    const Hit& hit = hits[i];
+    if (hit.distance > least + parts.tie + 1e-14 * std::abs(least)) continue;
+    if (std::tie(hit.piece, hit.triangle) < std::tie(best.piece, best.triangle)) best = hit;
   }
   const double ground = parts.ground_distance(ray);
   if (ground <= ray.to && ground < best.distance) {
@@ -260,12 +265,10 @@ Hit Scene::nearest(const SceneRay& ray) const {
     best.lifted = best.position + parts.clearance * best.normal;
   } else if (best.exists()) {
     const VisibleSurface& surface = parts.surface[best.piece];
-    std::array<double, 3> barycentric;
     const auto& corner = surface.triangle[best.triangle].corner;
     const NearestFacet closest = closest_point(
         {surface.position[corner[0]], surface.position[corner[1]], surface.position[corner[2]]}, best.rest);
-    barycentric = closest.barycentric;
-    parts.add_normals(best, surface, barycentric);
+    parts.add_normals(best, surface, closest.barycentric);
   }
   return best;
 }

@@ -75,22 +75,27 @@ TEST(Scene, FindsWhatTryingEveryTriangleFinds) {
   EXPECT_GT(hits, 1000);
 }
 
-TEST(Scene, RaysThroughSharedEdgesAndVerticesHitTheLowestTriangle) {
-  const Root root = root_of(tet_grid(4, 4, 4), Vec3d(0.5, 0.5, 0.5));
-  const Pieces pieces = whole_piece(root.model().mesh);
-  const Scene scene(root, pieces, matte());
-  const PieceSurface surface = surface_of(pieces, 0, root.model().mesh, root.model().boundary);
-  for (int x = 1; x < 4; ++x)
-    for (int y = 1; y < 4; ++y) { // straight down through a vertex of the top face
-      const Hit hit = scene.nearest({{double(x), double(y), 30}, {0, 0, -1}});
+/// Where the surfaces of two pieces coincide, the lowest piece is seen, whatever the tree meets first.
+TEST(Scene, TiesGoToTheLowestPiece) {
+  const Root root = root_of(tet_grid(8, 3, 3, 1.1), Vec3d(0.5, 0.5, 0.5));
+  for (const double shift : {-2.2, -1.3}) {
+    Pieces pieces = whole_piece(root.model().mesh);
+    cut(pieces, root.model().mesh, root.model().boundary, *level_set_of(PlaneCut{{1, 0, 0}, 4.4}));
+    pieces.piece[1].placement.translation = {shift, 0, 0};
+    const Scene scene(root, pieces, matte());
+    int shared = 0;
+    for (int i = 0; i < 2000; ++i) {
+      Random random(6, i);
+      const Vec3d at(random.uniform(0, 6.5), random.uniform(0.1, 3.2), 3.3);
+      const Vec3d from = at + Vec3d(random.uniform(-20, 20), random.uniform(-20, 20), 30);
+      const Hit hit = scene.nearest({from, (at - from).normalized()});
       ASSERT_TRUE(hit.exists());
-      std::uint32_t lowest = 0xffffffffu;
-      for (std::uint32_t t = 0; t < surface.triangle.size(); ++t)
-        for (const std::uint32_t row : surface.triangle[t].corner)
-          if ((surface.position[row] - Vec3d(x, y, 4)).norm() < 1e-9) lowest = std::min(lowest, t);
-      EXPECT_EQ(hit.triangle, lowest);
-      EXPECT_EQ(hit.rest, Vec3d(x, y, 4));
+      if (hit.position.z() < 3.3 - 1e-6 || std::abs(hit.position.x() - 4.4) < 1e-3) continue;
+      EXPECT_EQ(hit.piece, hit.position.x() < 4.4 ? 0u : 1u);
+      shared += hit.position.x() > 4.4 + shift && hit.position.x() < 4.4;
     }
+    EXPECT_GT(shared, 300);
+  }
 }
 
 TEST(Scene, UnmovedSectionsAreNotThere) {
