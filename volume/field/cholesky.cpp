@@ -52,8 +52,8 @@ TiledCholesky::TiledCholesky(Eigen::MatrixXd lower) : l_(std::move(lower)) {
   }
 }
 
-Eigen::VectorXd TiledCholesky::solve(const Eigen::VectorXd& b) const {
-  Eigen::VectorXd x = b;
+Eigen::MatrixXd TiledCholesky::solve(const Eigen::MatrixXd& b) const {
+  Eigen::MatrixXd x = b;
   if (x.size() == 0) return x;
   l_.triangularView<Eigen::Lower>().solveInPlace(x);
   l_.transpose().triangularView<Eigen::Upper>().solveInPlace(x);

@@ -11,7 +11,8 @@ public:
   /// Only the lower triangle is read. Throws SolverFailure, with the pivot, when the matrix is not positive definite.
   explicit TiledCholesky(Eigen::MatrixXd lower);
 
-  Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
+  /// X of A X = B, one column per right-hand side.
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
 
 private:
   Eigen::MatrixXd l_;
