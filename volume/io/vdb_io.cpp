@@ -119,8 +119,8 @@ public:
             if (!contains(tet, center)) continue;
             word |= bit;
             ++active;
-            const Material material =
-                material_at(root_, {.position = center, .region = mesh.region[tet.root], .hint = tet.root});
+            const Material material = material_at(
+                root_, {.position = center, .region = mesh.region[tet.root], .facet = {}, .hint = tet.root});
             std::copy_n(material.value.begin() + component, 3, leaf.color[n]);
           }
     }
@@ -229,8 +229,8 @@ VdbResult write_vdb(const std::filesystem::path& path, const Root& root, const P
 
   VdbResult result;
   result.voxel = options.voxel > 0 ? options.voxel : 1;
-  Voxeliser probe(root, pieces, result.voxel);
-  const Vec3d extent = probe.bounds().extent();
+  const Box bounds = Voxeliser(root, pieces, result.voxel).bounds();
+  const Vec3d extent = bounds.extent();
   if (options.voxel == 0) result.voxel = std::max(extent.maxCoeff() / 256, 1e-9);
   double voxels = 1;
   for (int i = 0; i < 3; ++i) {
@@ -238,8 +238,8 @@ VdbResult write_vdb(const std::filesystem::path& path, const Root& root, const P
     voxels *= n;
     result.extent[i] = static_cast<int>(std::min(n, 2e9));
   }
-  const double reach = std::max(probe.bounds().low.cwiseAbs().maxCoeff(), probe.bounds().high.cwiseAbs().maxCoeff());
-  if (!probe.bounds().empty() && (voxels > most_voxels || reach / result.voxel > 1e9))
+  const double reach = std::max(bounds.low.cwiseAbs().maxCoeff(), bounds.high.cwiseAbs().maxCoeff());
+  if (!bounds.empty() && (voxels > most_voxels || reach / result.voxel > 1e9))
     throw InvalidInput(where, "would have " + std::to_string(voxels / 1e9) + " billion voxels",
                        "give voxels larger than " + std::to_string(result.voxel) + " mm");
 

@@ -87,7 +87,7 @@ void write_vtu(const std::filesystem::path& path, const Root& root, const Pieces
     for (const auto& [v, tet] : vertex) {
       row[v] = static_cast<std::uint32_t>(at.size());
       const Vec3d& x = pieces.position(mesh, v);
-      at.push_back({.position = x, .hint = tet});
+      at.push_back({.position = x, .facet = {}, .hint = tet});
       const Vec3d world = pieces.piece[piece].placement(x);
       position.insert(position.end(), world.data(), world.data() + 3);
     }
@@ -106,7 +106,8 @@ void write_vtu(const std::filesystem::path& path, const Root& root, const Pieces
     const auto& corner = cell[c].corner;
     const Vec3d sum = pieces.position(mesh, corner[0]) + pieces.position(mesh, corner[1]) +
                       pieces.position(mesh, corner[2]) + pieces.position(mesh, corner[3]);
-    put_color({.position = sum / 4, .region = mesh.region[cell[c].root], .hint = cell[c].root}, &cell_color[3 * c]);
+    put_color({.position = sum / 4, .region = mesh.region[cell[c].root], .facet = {}, .hint = cell[c].root},
+              &cell_color[3 * c]);
   });
 
   std::vector<std::int64_t> offset(cell.size());

@@ -71,7 +71,10 @@ Result write(Write& image) {
   if (format == "exr" || format == "tif") spec.attribute("DateTime", "1980:01:01 00:00:00");
   if (format == "exr") spec.attribute("compression", "zip");
   if (format == "tif") spec.attribute("compression", "zip");
-  if (format == "jpg") spec.attribute("compression", "jpeg:95");
+  if (format == "jpg") {
+    spec.attribute("compression", "jpeg:95");
+    spec.attribute("jpeg:subsampling", "4:4:4");
+  }
   if (image.srgb) spec.attribute("oiio:ColorSpace", "sRGB");
   spec.attribute("oiio:UnassociatedAlpha", 1);
   if (image.pixels_per_mm > 0) {
