@@ -19,3 +19,14 @@ foreach(module image:pith-images vdb:pith-vdb)
 endforeach()
 target_link_libraries(pith-images PRIVATE pith_options PkgConfig::OpenImageIO)
 target_link_libraries(pith-vdb PRIVATE pith_options OpenVDB::openvdb)
+
+# The command line: everything, linked once.
+file(GLOB cli_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cli/*.cpp ${PROJECT_SOURCE_DIR}/cli/*.h)
+if(cli_sources)
+  add_executable(pith ${cli_sources})
+  target_include_directories(pith PRIVATE ${PROJECT_SOURCE_DIR})
+  target_compile_definitions(pith PRIVATE PITH_VERSION="${PROJECT_VERSION}")
+  target_link_libraries(pith PRIVATE pith::recipe pith::raytrace CLI11::CLI11 fmt::fmt nlohmann_json::nlohmann_json
+    pith_options)
+  add_dependencies(pith pith-tetgen pith-images pith-vdb)
+endif()

@@ -344,6 +344,17 @@ std::map<std::string, std::string> BuildResult::keys() const {
   return result;
 }
 
+void add_last_cut(std::map<std::string, std::string>& keys, const Recipe& recipe) {
+  std::erase_if(keys, [](const auto& entry) { return entry.first.starts_with("move "); });
+  const std::size_t last = recipe.cuts.size() - 1;
+  const std::string before = last == 0 ? "tets" : "cut " + std::to_string(last - 1);
+  const auto found = keys.find(before);
+  if (found == keys.end()) return; // a model that was not built from a recipe
+  KeyMaker cut(code_version());
+  cut.add("cut").add(key_from(found->second));
+  keys["cut " + std::to_string(last)] = add(cut, recipe.cuts[last]).key().text();
+}
+
 Builder::Builder(BuildOptions options)
     : options_(std::move(options)), memory_(options_.memory_bytes), disk_(options_.cache, options_.cache_bytes) {
   if (options_.code.empty()) options_.code = code_version();

@@ -43,6 +43,10 @@ struct BuildResult {
   std::map<std::string, std::string> keys() const; ///< stage → key, as a .pith file stores them
 };
 
+/// After a cut was appended to a recipe (append_cut) and done by hand: brings the keys of a model file up to date, so
+/// that they are those of a build of the new recipe by this program.
+void add_last_cut(std::map<std::string, std::string>& keys, const Recipe& recipe);
+
 /// Builds recipes and remembers the results of their stages.
 class Builder {
 public:

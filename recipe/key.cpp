@@ -1,6 +1,7 @@
 #include "recipe/key.h"
 
 #include <bit>
+#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -31,6 +32,15 @@ std::string Key::text() const {
     result[31 - i] = digit[(low >> (4 * i)) & 15];
   }
   return result;
+}
+
+Key key_from(std::string_view text) {
+  Key key;
+  if (text.size() != 32) return key;
+  const auto read = [](std::string_view digits, std::uint64_t& into) {
+    return std::from_chars(digits.data(), digits.data() + 16, into, 16).ptr == digits.data() + 16;
+  };
+  return read(text.substr(0, 16), key.high) && read(text.substr(16), key.low) ? key : Key{};
 }
 
 Key key_of(std::string_view bytes, std::uint64_t seed) {

@@ -16,6 +16,9 @@ struct Key {
   std::string text() const; ///< 32 hexadecimal digits
 };
 
+/// Reads Key::text() back; zeros for anything else.
+Key key_from(std::string_view text);
+
 /// MurmurHash3's 128-bit variant for 64-bit machines (Appleby 2011).
 Key key_of(std::string_view bytes, std::uint64_t seed = 0);
 

@@ -133,9 +133,10 @@ void read_mask(const JsonNode& node, SplotchOptions& mask) {
 }
 
 void read_frame(const JsonNode& node, FrameOptions& frame) {
-  node.object({"layer_width", "singular_sine", "smallest_scale", "largest_scale"});
+  node.object({"layer_width", "singular_sine", "vanishing_rise", "smallest_scale", "largest_scale"});
   node.optional_number("layer_width", frame.layer_width, range::positive);
   node.optional_number("singular_sine", frame.singular_sine, range::fraction);
+  node.optional_number("vanishing_rise", frame.vanishing_rise, range::fraction);
   node.optional_number("smallest_scale", frame.smallest_scale, range::positive_mm);
   node.optional_number("largest_scale", frame.largest_scale, range::positive_mm);
   if (frame.largest_scale > 0 && frame.smallest_scale > frame.largest_scale)
@@ -143,10 +144,13 @@ void read_frame(const JsonNode& node, FrameOptions& frame) {
 }
 
 void read_fill(const JsonNode& node, LapOptions& fill) {
-  node.object({"frame_tolerance", "coverage_order", "max_rounds"});
+  node.object({"frame_tolerance", "sample_spacing", "coverage_order", "mask_variants", "align", "max_attempts"});
   node.optional_number("frame_tolerance", fill.frame_tolerance, {0, pi, true, "above 0, to pi", "give radians"});
+  node.optional_number("sample_spacing", fill.sample_spacing, {1e-3, 1, false, "0.001 to 1", "give texture widths"});
   node.optional_whole("coverage_order", fill.coverage_order, 1, 16, "8 samples each tet edge eight times");
-  node.optional_whole("max_rounds", fill.max_rounds, 1, 1'000'000, "give a number of rounds");
+  node.optional_whole("mask_variants", fill.mask_variants, 1, 64, "give a number of outlines");
+  if (const auto align = node.find("align")) fill.align = align->boolean();
+  node.optional_whole("max_attempts", fill.max_attempts, 1, 1000, "give a number of pastes");
 }
 
 Solid solid_from(const JsonNode& node) {
@@ -228,7 +232,13 @@ Recipe read_recipe(const std::filesystem::path& path) {
 
 CutStep parse_cut(const std::string& text, const std::string& file) {
   const nlohmann::json document = json_of(text, file);
-  return cut_from(JsonNode(document, file));
+  const JsonNode root(document, file);
+  CutStep step;
+  if (root.is_object() && root.has("points"))
+    step.shape = stroke_from(root);
+  else
+    step = cut_from(root);
+  return step;
 }
 
 View parse_view(const std::string& text, const std::string& file) {

@@ -24,19 +24,6 @@ SphereCut sphere_from(const JsonNode& node) {
   return result;
 }
 
-StrokeCut stroke_from(const JsonNode& node) {
-  node.object({"points", "view"});
-  StrokeCut result;
-  const JsonNode points = node.at("points");
-  for (const JsonNode& point : points.items(2, "a stroke needs two points [u, v] or more"))
-    result.point.push_back(point.vector2());
-  const bool moves = std::any_of(result.point.begin(), result.point.end(),
-                                 [&](const Vec2d& p) { return p != result.point.front(); });
-  if (!moves) points.fail("stay at one place", "give two different points");
-  result.view = view_from(node.at("view"));
-  return result;
-}
-
 /// { "axis": [x, y, z], "angle": radians }
 void read_turn(const JsonNode& node, Vec3d& axis, double& angle) {
   axis = node.at("axis").vector3();
@@ -62,6 +49,19 @@ PiecePlacement placement_from(const JsonNode& node) {
 }
 
 } // namespace
+
+StrokeCut stroke_from(const JsonNode& node) {
+  node.object({"points", "view"});
+  StrokeCut result;
+  const JsonNode points = node.at("points");
+  for (const JsonNode& point : points.items(2, "a stroke needs two points [u, v] or more"))
+    result.point.push_back(point.vector2());
+  const bool moves = std::any_of(result.point.begin(), result.point.end(),
+                                 [&](const Vec2d& p) { return p != result.point.front(); });
+  if (!moves) points.fail("stay at one place", "give two different points");
+  result.view = view_from(node.at("view"));
+  return result;
+}
 
 View view_from(const JsonNode& node) {
   node.object({"eye", "target", "up", "vertical_angle", "height"});

@@ -7,6 +7,7 @@
 namespace pith {
 
 CutStep cut_from(const JsonNode& node);
+StrokeCut stroke_from(const JsonNode& node);
 MoveStep move_from(const JsonNode& node);
 View view_from(const JsonNode& node);
 

@@ -98,7 +98,7 @@ Recipe parse_recipe(const std::string& text, const std::string& file);
 /// Reads a recipe file; messages call it by its file name. Errors: IoFailure when it cannot be read, and the above.
 Recipe read_recipe(const std::filesystem::path& path);
 
-/// Reads one cut (an entry of "cuts") from JSON text. Errors as for recipes.
+/// Reads one cut from JSON text: an entry of "cuts", or a bare stroke ("points" and "view"). Errors as for recipes.
 CutStep parse_cut(const std::string& text, const std::string& file);
 
 /// Reads a view from JSON text. Errors as for recipes.

@@ -158,6 +158,14 @@ void transfer(Archive& archive, Item& vertex) {
 }
 
 template <class Archive, class Item>
+requires MaybeConst<Item, SectionNormal>
+void transfer(Archive& archive, Item& normal) {
+  transfer(archive, normal.vertex);
+  transfer(archive, normal.cut);
+  transfer(archive, normal.normal);
+}
+
+template <class Archive, class Item>
 requires MaybeConst<Item, Pieces>
 void transfer(Archive& archive, Item& pieces) {
   transfer(archive, pieces.root_vertex_count);
@@ -166,6 +174,7 @@ void transfer(Archive& archive, Item& pieces) {
   transfer_list(archive, pieces.added);
   transfer_list(archive, pieces.added_position);
   transfer_list(archive, pieces.added_normal);
+  transfer_list(archive, pieces.on_section);
   transfer(archive, pieces.cut_count);
 }
 

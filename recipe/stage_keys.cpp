@@ -41,6 +41,7 @@ KeyMaker& add(KeyMaker& maker, const std::vector<AxisStroke>& strokes) {
 KeyMaker& add(KeyMaker& maker, const FrameOptions& options) {
   return maker.add(options.layer_width)
       .add(options.singular_sine)
+      .add(options.vanishing_rise)
       .add(options.smallest_scale)
       .add(options.largest_scale);
 }
@@ -51,7 +52,10 @@ KeyMaker& add(KeyMaker& maker, const LapOptions& options) {
       .add(options.seed)
       .add(options.frame_tolerance)
       .add(options.coverage_order)
-      .add(options.max_rounds)
+      .add(options.sample_spacing)
+      .add(options.mask_variants)
+      .add(options.align)
+      .add(options.max_attempts)
       .add(mask.axes)
       .add(mask.resolution)
       .add(mask.radius)

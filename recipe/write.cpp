@@ -2,6 +2,7 @@
 // left out, so that a recipe says what its author decided.
 #include "recipe/recipe.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace pith {
@@ -76,6 +77,7 @@ json json_from(const FrameOptions& frame) {
   json result = json::object();
   put(result, "layer_width", frame.layer_width, usual.layer_width);
   put(result, "singular_sine", frame.singular_sine, usual.singular_sine);
+  put(result, "vanishing_rise", frame.vanishing_rise, usual.vanishing_rise);
   put(result, "smallest_scale", frame.smallest_scale, usual.smallest_scale);
   put(result, "largest_scale", frame.largest_scale, usual.largest_scale);
   return result;
@@ -105,8 +107,11 @@ json json_from(const Solid& solid) {
   const LapOptions usual;
   json fill = json::object();
   put(fill, "frame_tolerance", solid.fill.frame_tolerance, usual.frame_tolerance);
+  put(fill, "sample_spacing", solid.fill.sample_spacing, usual.sample_spacing);
   put(fill, "coverage_order", solid.fill.coverage_order, usual.coverage_order);
-  put(fill, "max_rounds", solid.fill.max_rounds, usual.max_rounds);
+  put(fill, "mask_variants", solid.fill.mask_variants, usual.mask_variants);
+  put(fill, "align", solid.fill.align, usual.align);
+  put(fill, "max_attempts", solid.fill.max_attempts, usual.max_attempts);
   put_object(result, "fill", std::move(fill));
   result["seed"] = solid.fill.seed;
   return result;
@@ -163,6 +168,16 @@ void put_list(json& into, const char* key, const std::vector<T>& entries) {
   into[key] = std::move(list);
 }
 
+/// Shortest text that reads back alike; whole numbers without a point.
+std::string scalar(const json& value) {
+  if (value.is_number_float()) {
+    const double x = value.get<double>();
+    if (x == std::trunc(x) && std::abs(x) < 1e15 && !(x == 0 && std::signbit(x)))
+      return std::to_string(static_cast<std::int64_t>(x));
+  }
+  return value.dump();
+}
+
 bool flat(const json& value) {
   for (const json& entry : value)
     if (entry.is_structured()) return false;
@@ -173,11 +188,11 @@ bool flat(const json& value) {
 void print(const json& value, int indent, std::string& text) {
   if (!value.is_structured() || value.empty() || (value.is_array() && flat(value))) {
     if (!value.is_array() || value.empty()) {
-      text += value.dump();
+      text += scalar(value);
       return;
     }
     text += '[';
-    for (std::size_t i = 0; i < value.size(); ++i) text += (i ? ", " : "") + value[i].dump();
+    for (std::size_t i = 0; i < value.size(); ++i) text += (i ? ", " : "") + scalar(value[i]);
     text += ']';
     return;
   }

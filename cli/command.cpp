@@ -1,0 +1,117 @@
+#include "cli/command.h"
+
+#include "volume/base/error.h"
+
+#include <CLI/Error.hpp>
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace pith::cli {
+
+void ProgressLine::show(const std::string& what, double fraction) {
+  if (!on_) return;
+  const std::int64_t now =
+      std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now().time_since_epoch())
+          .count();
+  if (shown_ && now - last_ms_ < 50) return;
+  last_ms_ = now;
+  constexpr int width = 30;
+  const int filled = static_cast<int>(std::clamp(fraction, 0.0, 1.0) * width);
+  std::fprintf(stderr, "\r\033[K%-14s [%s%s] %3d %%", what.c_str(), std::string(filled, '#').c_str(),
+               std::string(width - filled, ' ').c_str(), static_cast<int>(100 * std::clamp(fraction, 0.0, 1.0)));
+  std::fflush(stderr);
+  shown_ = true;
+}
+
+void ProgressLine::clear() {
+  if (shown_) std::fputs("\r\033[K", stderr);
+  shown_ = false;
+}
+
+Progress Session::progress(const std::string& what) const {
+  return [this, what](double fraction) {
+    if (progress_line) progress_line->show(what, fraction);
+    return !(interrupt && interrupt->asked());
+  };
+}
+
+void Session::stop_if_asked() const {
+  if (interrupt && interrupt->asked()) throw Cancelled();
+}
+
+void Session::say(const std::string& line) const {
+  if (json || quiet) return;
+  if (progress_line) progress_line->clear();
+  std::printf("%s\n", line.c_str());
+}
+
+void Session::print(const Json& object) const {
+  if (!json) return;
+  if (progress_line) progress_line->clear();
+  std::printf("%s\n", object.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+}
+
+std::string extension_of(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  if (!extension.empty()) extension.erase(0, 1);
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return extension;
+}
+
+void check_output(const std::filesystem::path& path, std::initializer_list<const char*> extensions) {
+  const std::string extension = extension_of(path);
+  if (extensions.size() > 0 &&
+      std::none_of(extensions.begin(), extensions.end(), [&](const char* one) { return extension == one; })) {
+    std::string all;
+    for (const char* one : extensions) all += std::string(all.empty() ? "." : ", .") + one;
+    throw InvalidInput(path.string(), extension.empty() ? "has no extension" : "has the extension ." + extension,
+                       "name a file that ends in " + all);
+  }
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) throw IoFailure(path.string(), "is a folder; name a file");
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  if (!std::filesystem::is_directory(folder, error))
+    throw IoFailure(path.string(), "cannot be written: its folder does not exist; make the folder first");
+  if (::access(folder.c_str(), W_OK) != 0)
+    throw IoFailure(path.string(), "cannot be written: no permission in its folder; choose another");
+}
+
+std::vector<double> numbers_of(const std::string& option, const std::string& text, std::size_t count) {
+  std::vector<double> result;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (at <= end) {
+    double number = 0;
+    if (at < end && *at == '+') ++at;
+    const auto [next, error] = std::from_chars(at, end, number);
+    if (error != std::errc() || !std::isfinite(number)) break;
+    result.push_back(number);
+    at = next;
+    if (at == end || *at != ',') break;
+    ++at;
+  }
+  if (at != end || result.size() != count)
+    throw CLI::ValidationError(option,
+                               "'" + text + "' is not " + std::to_string(count) + " numbers with commas between");
+  return result;
+}
+
+std::uint64_t peak_memory_bytes() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+std::uint64_t helper_peak_memory_bytes() {
+  rusage usage{};
+  ::getrusage(RUSAGE_CHILDREN, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+} // namespace pith::cli

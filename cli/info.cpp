@@ -1,0 +1,218 @@
+// pith info FILE
+#include "cli/command.h"
+#include "cli/pieces_report.h"
+#include "recipe/recipe.h"
+#include "volume/base/error.h"
+#include "volume/io/exemplar_io.h"
+#include "volume/io/image_io.h"
+#include "volume/io/mesh_io.h"
+#include "volume/io/model_io.h"
+#include "volume/io/npy.h"
+
+#include <fmt/format.h>
+
+namespace pith::cli {
+namespace {
+
+struct InfoOptions {
+  std::filesystem::path file;
+  bool quality = false;
+};
+
+Json json_from(const Vec3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
+Json json_from(const Box& box) {
+  if (box.empty()) return nullptr;
+  return {{"low", json_from(box.low)}, {"high", json_from(box.high)}};
+}
+std::string text_of(const Box& box) {
+  const Vec3d size = box.extent();
+  return fmt::format("{:.6g} × {:.6g} × {:.6g} mm", size.x(), size.y(), size.z());
+}
+std::string joined(const std::vector<std::string>& words) {
+  std::string result;
+  for (const std::string& word : words) result += (result.empty() ? "" : ", ") + word;
+  return result;
+}
+
+void add_quality(const std::filesystem::path& file, Json& pieces, const Session& session) {
+  const ModelFile model = read_model(file);
+  for (std::uint32_t piece = 0; piece < model.pieces.piece.size(); ++piece) {
+    session.stop_if_asked();
+    const PieceReport report = report_of(model.pieces, piece, model.model);
+    Json& entry = pieces[piece];
+    entry["triangles"] = report.triangles;
+    entry["watertight"] = report.watertight();
+    entry["manifold"] = report.manifold();
+    entry["minimum_dihedral"] = report.minimum_dihedral;
+    session.say(fmt::format("  piece {}: {} triangles, {}, {}, smallest dihedral of a cut tet {:.3f}°", piece,
+                            report.triangles, report.watertight() ? "watertight" : "NOT watertight",
+                            report.manifold() ? "manifold" : "not manifold",
+                            report.minimum_dihedral * 57.29577951308232));
+  }
+}
+
+void model_info(const InfoOptions& options, const Session& session) {
+  const ModelSummary summary = read_model_summary(options.file);
+  session.say(fmt::format("model {}: {} vertices, {} tets, {} boundary facets, {} region(s), {}", summary.name,
+                          summary.vertices, summary.tets, summary.facets, summary.regions, text_of(summary.bounds)));
+  Json layers = Json::array(), pieces = Json::array();
+  for (const auto& layer : summary.layer) {
+    layers.push_back({{"name", layer.name},
+                      {"domain", layer.domain},
+                      {"blend", layer.blend},
+                      {"region", layer.region},
+                      {"width", layer.width},
+                      {"patches", layer.patches},
+                      {"lookups", layer.lookups},
+                      {"corners", layer.corners},
+                      {"masks", layer.masks},
+                      {"exemplars", layer.exemplars},
+                      {"channels", layer.channels}});
+    session.say(fmt::format("  layer {} ({}, {}): {} patches, {} look-ups; exemplars {}; channels {}", layer.name,
+                            layer.domain, layer.blend, layer.patches, layer.lookups, joined(layer.exemplars),
+                            joined(layer.channels)));
+  }
+  for (const auto& piece : summary.piece) {
+    session.say(fmt::format("  piece {}: {:.6g} mm³, {} whole tets, {} cut tets, {}{}", pieces.size(), piece.volume,
+                            piece.whole_tets, piece.cut_tets, text_of(piece.bounds), piece.moved ? ", moved" : ""));
+    pieces.push_back({{"volume", piece.volume},
+                      {"whole_tets", piece.whole_tets},
+                      {"cut_tets", piece.cut_tets},
+                      {"bounds", json_from(piece.bounds)},
+                      {"moved", piece.moved}});
+  }
+  if (options.quality) add_quality(options.file, pieces, session);
+  session.say(fmt::format("  {} cut(s); {:.2f} MB", summary.cuts, summary.file_bytes / 1e6));
+  Json keys = Json::object();
+  for (const auto& [stage, key] : summary.key) keys[stage] = key;
+  session.print({{"file", options.file.string()},
+                 {"kind", "model"},
+                 {"bytes", summary.file_bytes},
+                 {"version", summary.version},
+                 {"name", summary.name},
+                 {"vertices", summary.vertices},
+                 {"tets", summary.tets},
+                 {"facets", summary.facets},
+                 {"regions", summary.regions},
+                 {"patches", summary.patches},
+                 {"lookups", summary.lookups},
+                 {"cuts", summary.cuts},
+                 {"bounds", json_from(summary.bounds)},
+                 {"layers", std::move(layers)},
+                 {"pieces", std::move(pieces)},
+                 {"stages", std::move(keys)}});
+}
+
+void mesh_info(const InfoOptions& options, const Session& session) {
+  const TriMesh mesh = read_tri_mesh(options.file);
+  const Box bounds = bounds_of(mesh);
+  const double volume = signed_volume(mesh);
+  Json object = {{"file", options.file.string()},
+                 {"kind", "mesh"},
+                 {"bytes", std::filesystem::file_size(options.file)},
+                 {"vertices", mesh.vertex_count()},
+                 {"triangles", mesh.triangle_count()},
+                 {"bounds", json_from(bounds)},
+                 {"volume", volume}};
+  session.say(fmt::format("mesh: {} vertices, {} triangles, {}, signed volume {:.6g} mm³", mesh.vertex_count(),
+                          mesh.triangle_count(), text_of(bounds), volume));
+  if (options.quality) {
+    const SurfaceDefects defects = surface_defects(mesh);
+    object["clean"] = defects.clean();
+    object["shells"] = defects.shells;
+    session.say(defects.clean() ? fmt::format("  clean, {} shell(s)", defects.shells) : "  " + defects.summary());
+  }
+  session.print(object);
+}
+
+void exemplar_info(const InfoOptions& options, const Session& session) {
+  const Exemplar exemplar = read_exemplar(options.file);
+  Json size = Json::array(), wrap = Json::array(), channels = Json::array();
+  static constexpr const char* wrap_names[] = {"clamp", "repeat", "mirror"};
+  std::string size_text, channel_text;
+  for (int axis = 0; axis < exemplar.axes; ++axis) {
+    size.push_back(exemplar.size[axis]);
+    wrap.push_back(wrap_names[static_cast<int>(exemplar.wrap[axis])]);
+    size_text += (axis ? "×" : "") + std::to_string(exemplar.size[axis]);
+  }
+  for (const Channel& channel : exemplar.channel) {
+    channels.push_back({{"name", channel.name}, {"components", channel.components}, {"srgb", channel.srgb}});
+    channel_text += (channel_text.empty() ? "" : ", ") + channel.name;
+  }
+  session.say(fmt::format("exemplar {}: {}, channels {}", exemplar.name, size_text, channel_text));
+  session.print({{"file", options.file.string()},
+                 {"kind", "exemplar"},
+                 {"bytes", std::filesystem::file_size(options.file)},
+                 {"name", exemplar.name},
+                 {"size", std::move(size)},
+                 {"wrap", std::move(wrap)},
+                 {"channels", std::move(channels)}});
+}
+
+void recipe_info(const InfoOptions& options, const Session& session) {
+  const Recipe recipe = read_recipe(options.file);
+  session.say(fmt::format("recipe {}: surface {}, {} solid(s), {} cut(s), {} move(s)", recipe.name,
+                          recipe.surface.file, recipe.solids.size(), recipe.cuts.size(), recipe.moves.size()));
+  session.print({{"file", options.file.string()},
+                 {"kind", "recipe"},
+                 {"bytes", std::filesystem::file_size(options.file)},
+                 {"name", recipe.name},
+                 {"surface", recipe.surface.file},
+                 {"solids", recipe.solids.size()},
+                 {"cuts", recipe.cuts.size()},
+                 {"moves", recipe.moves.size()}});
+}
+
+void array_info(const InfoOptions& options, const Session& session) {
+  const NpyArray array = read_npy(options.file);
+  std::string shape;
+  for (const std::size_t n : array.shape) shape += (shape.empty() ? "" : " × ") + std::to_string(n);
+  session.say(fmt::format("array: {} {}", shape, name_of(array.type)));
+  session.print({{"file", options.file.string()},
+                 {"kind", "array"},
+                 {"bytes", std::filesystem::file_size(options.file)},
+                 {"shape", array.shape},
+                 {"type", name_of(array.type)}});
+}
+
+void image_info(const InfoOptions& options, const Session& session) {
+  const Image image = read_image(options.file);
+  session.say(fmt::format("image: {} × {} pixels, {} channel(s)", image.width, image.height, image.channels));
+  session.print({{"file", options.file.string()},
+                 {"kind", "image"},
+                 {"bytes", std::filesystem::file_size(options.file)},
+                 {"width", image.width},
+                 {"height", image.height},
+                 {"channels", image.channels}});
+}
+
+void run(const InfoOptions& options, const Session& session) {
+  std::error_code error;
+  if (!std::filesystem::exists(options.file, error))
+    throw IoFailure(options.file.string(), "does not exist; check its name");
+  if (!std::filesystem::is_regular_file(options.file, error))
+    throw IoFailure(options.file.string(), "is not a file; name one");
+  const std::string extension = extension_of(options.file);
+  if (extension == "pith") return model_info(options, session);
+  if (extension == "exemplar") return exemplar_info(options, session);
+  if (extension == "json") return recipe_info(options, session);
+  if (extension == "npy") return array_info(options, session);
+  if (extension == "obj" || extension == "off" || extension == "ply" || extension == "stl")
+    return mesh_info(options, session);
+  if (is_image_path(options.file)) return image_info(options, session);
+  throw InvalidInput(options.file.string(), "is of no kind that pith knows",
+                     "give a .pith, .exemplar, .json, .npy, .obj, .off, .ply, .stl or an image");
+}
+
+} // namespace
+
+Verb info_verb(CLI::App& program) {
+  auto options = std::make_shared<InfoOptions>();
+  CLI::App* app = program.add_subcommand("info", "what is in a model, mesh, exemplar, recipe, array or image");
+  app->add_option("file", options->file, "the file")->required();
+  app->add_flag("--quality", options->quality,
+                "also what takes a while: are pieces or surfaces watertight, manifold ...");
+  return {app, [options](const Session& session) { run(*options, session); }};
+}
+
+} // namespace pith::cli

@@ -1,0 +1,147 @@
+// pith render MODEL.pith -o IMAGE.exr|png
+#include "cli/command.h"
+#include "cli/scene_file.h"
+#include "raytrace/framing.h"
+#include "recipe/recipe.h"
+#include "volume/base/error.h"
+#include "volume/io/atomic_file.h"
+#include "volume/io/image_io.h"
+#include "volume/io/model_io.h"
+
+#include <chrono>
+#include <fmt/format.h>
+
+namespace pith::cli {
+namespace {
+
+struct RenderVerbOptions {
+  std::filesystem::path model, output, scene, view;
+  std::string size = "800x600", direction;
+  int samples = 64;
+  double time = 0, exposure = 0;
+  bool transparent = false;
+};
+
+std::array<int, 2> size_of(const std::string& text) {
+  int width = 0, height = 0, end = 0;
+  const bool read =
+      std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &end) == 2 && end == static_cast<int>(text.size());
+  if (!read || width < 1 || height < 1 || width > 32768 || height > 32768)
+    throw CLI::ValidationError("--size", "'" + text + "' is not WIDTHxHEIGHT, such as 800x600");
+  return {width, height};
+}
+
+Lights lights_of(const SceneFile& scene, const Scene& ready, const View& view) {
+  const Box& bounds = ready.bounds();
+  if (scene.default_lights) return default_lights(view, bounds.center(), 0.5 * bounds.diagonal(), ready.options().up);
+  Lights lights;
+  lights.environment.scale = 0; // lamps alone, unless an environment is named
+  if (scene.environment) lights.environment = *scene.environment;
+  lights.area = scene.lights;
+  return lights;
+}
+
+void write_picture(const RenderVerbOptions& options, const Film& film, const ToneOptions& tone) {
+  const Image color = color_of(film);
+  const std::string extension = extension_of(options.output);
+  if (extension != "exr") {
+    Image shown = extension == "hdr" ? color : tone_mapped(color, tone);
+    if (shown.channels == 4) { // files of this kind hold colour that is not multiplied by alpha
+      for (std::size_t i = 0; i < shown.pixel.size(); i += 4)
+        if (const float alpha = shown.pixel[i + 3]; alpha > 0 && alpha < 1)
+          for (int c = 0; c < 3; ++c) shown.pixel[i + c] /= alpha;
+    }
+    write_image(options.output, shown);
+    return;
+  }
+  std::vector<ImageLayer> layers;
+  for (FilmLayer& layer : layers_of(film))
+    if (layer.name != "color") layers.push_back({std::move(layer.name), std::move(layer.image)});
+  write_image(options.output, color, {}, layers);
+}
+
+void run(const CLI::App& app, const RenderVerbOptions& options, const Session& session) {
+  const auto start = std::chrono::steady_clock::now();
+  check_output(options.output, {"png", "exr", "jpg", "hdr", "tif"});
+  const auto [width, height] = size_of(options.size);
+  SceneFile scene_file;
+  if (!options.scene.empty())
+    scene_file =
+        parse_scene(file_content(options.scene), options.scene.filename().string(), options.scene.parent_path());
+  if (!options.direction.empty()) {
+    const std::vector<double> d = numbers_of("--direction", options.direction, 3);
+    scene_file.direction = {d[0], d[1], d[2]};
+    scene_file.view.reset();
+  }
+  if (!options.view.empty())
+    scene_file.view = parse_view(file_content(options.view), options.view.filename().string());
+  if (app.count("--exposure") > 0) scene_file.tone.exposure = options.exposure;
+  if (options.transparent) scene_file.background.kind = Background::Kind::transparent;
+
+  ModelFile file = read_model(options.model);
+  if (!scene_file.view && options.direction.empty() && !file.recipe.empty())
+    scene_file.view = parse_recipe(file.recipe, options.model.filename().string() + " (recipe)").view;
+  const Pieces pieces = std::move(file.pieces);
+  const Root root(std::move(file.model));
+  const Scene scene(root, pieces, scene_file.scene);
+  FramingOptions framing{.direction = scene_file.direction, .aspect = static_cast<double>(width) / height};
+  if (scene_file.vertical_angle) framing.vertical_angle = *scene_file.vertical_angle;
+  const View view = scene_file.view ? *scene_file.view : framed_view(scene, framing);
+
+  RenderOptions render_options;
+  render_options.width = width;
+  render_options.height = height;
+  render_options.samples = options.samples;
+  // With a time and no number of samples, time alone says when it is enough.
+  if (options.time > 0 && app.count("--spp") == 0) render_options.samples = 1 << 20;
+  render_options.time_limit = options.time;
+  render_options.threads = session.threads;
+  if (session.seed) render_options.seed = *session.seed;
+  render_options.background = scene_file.background;
+  const auto begin = std::chrono::steady_clock::now();
+  const Progress progress = session.progress("render");
+  const Film film = render(scene, view, lights_of(scene_file, scene, view), render_options, progress);
+  const double rendering = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  session.stop_if_asked();
+  write_picture(options, film, scene_file.tone);
+
+  const std::uint32_t samples = film.pixel.empty() ? 0 : film.pixel.front().samples;
+  session.say(fmt::format("{}: {} × {} pixels, {} samples each, {:.2f} s", options.output.string(), width, height,
+                          samples, rendering));
+  session.print({{"output", options.output.string()},
+                 {"width", width},
+                 {"height", height},
+                 {"samples", samples},
+                 {"triangles", scene.triangle_count()},
+                 {"rendering_seconds", rendering},
+                 {"seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()},
+                 {"view",
+                  {{"eye", {view.eye.x(), view.eye.y(), view.eye.z()}},
+                   {"target", {view.target.x(), view.target.y(), view.target.z()}},
+                   {"up", {view.up.x(), view.up.y(), view.up.z()}},
+                   {"vertical_angle", view.vertical_angle},
+                   {"height", view.height}}}});
+}
+
+} // namespace
+
+Verb render_verb(CLI::App& program) {
+  auto options = std::make_shared<RenderVerbOptions>();
+  CLI::App* app = program.add_subcommand("render", "path-trace a picture of a model");
+  app->add_option("model", options->model, "MODEL.pith")->required();
+  app->add_option("-o,--output", options->output,
+                  "IMAGE.png, .exr (with albedo, normal, depth ...), .jpg, .hdr or .tif")
+      ->required();
+  app->add_option("--size", options->size, "WIDTHxHEIGHT in pixels");
+  app->add_option("--spp", options->samples, "samples per pixel")->check(CLI::Range(1, 1 << 20));
+  app->add_option("--time", options->time, "seconds after which no further pass starts")->check(CLI::PositiveNumber);
+  app->add_option("--scene", options->scene, "light, ground, background and view: SCENE.json");
+  app->add_option("--view", options->view,
+                  "where to look from, VIEW.json; otherwise the recipe's, or one that shows all");
+  app->add_option("--direction", options->direction, "x,y,z: look from there, framed to show all");
+  app->add_option("--exposure", options->exposure, "stops");
+  app->add_flag("--transparent", options->transparent, "no background: alpha");
+  return {app, [app, options](const Session& session) { run(*app, *options, session); }};
+}
+
+} // namespace pith::cli
