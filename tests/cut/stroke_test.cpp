@@ -84,6 +84,40 @@ TEST(Stroke, TheSignIsTheSideOfTheStroke) {
   }
 }
 
+TEST(Stroke, TheSignIsRightBesideSharpCornersAndNarrowBays) {
+  // Where a spline swings out: zigzags, a hairpin whose arms almost touch, a step.
+  std::vector<std::vector<Vec2d>> strokes = {
+      {{-1.2, 0},
+       {-0.6, 0.7},
+       {-0.5, -0.7},
+       {-0.3, 0.7},
+       {-0.1, -0.7},
+       {0.2, 0.7},
+       {0.3, -0.7},
+       {0.6, 0.7},
+       {1.2, 0}},
+      {{-1.2, 0}, {0, 0}, {0.02, 0.9}, {0.05, 0.9}, {0.07, 0}, {1.2, 0}},
+      {{-1.2, -0.3}, {0, -0.3}, {0, 0.3}, {1.2, 0.3}},
+      {{-1.2, 0}, {0.1, 0}, {0.1, 0.5}, {-0.5, 0.5}, {-0.5, 0.54}, {0.14, 0.54}, {0.14, 0}, {1.2, 0}}};
+  for (std::size_t k = 0; k < strokes.size(); ++k) {
+    SCOPED_TRACE("stroke " + std::to_string(k));
+    const std::vector<Vec2d>& stroke = strokes[k];
+    const auto level_set = level_set_of(StrokeCut{stroke, front_view()});
+    const StrokeNodes nodes = stroke_nodes(stroke, 36, "stroke");
+    Random random(26, k);
+    std::size_t wrong = 0, checked = 0;
+    for (int i = 0; i < 50'000; ++i) {
+      const Vec2d x(random.uniform(-1.15, 1.15), random.uniform(-0.9, 1.1));
+      if (distance_to(stroke, x) < 1.001 * nodes.length / 144) continue;
+      ++checked;
+      const bool left = left_of(stroke, nodes.start_direction, nodes.end_direction, x);
+      wrong += left != (level_set->value({10 * x.x(), 10 * x.y(), 1}) < 0);
+    }
+    EXPECT_EQ(wrong, 0u);
+    EXPECT_GT(checked, 25'000u);
+  }
+}
+
 TEST(Stroke, FollowsTheLineThatWasDrawn) {
   for (int seed = 0; seed < 10; ++seed) {
     const std::vector<Vec2d> stroke = wavy_stroke(seed);
