@@ -47,7 +47,9 @@ std::string SurfaceDefects::summary() const {
   return text;
 }
 
-SurfaceDefects surface_defects(const TriMesh& mesh) {
+namespace {
+
+SurfaceDefects defects_of(const TriMesh& mesh, bool with_intersections) {
   SurfaceDefects defects;
   bool placed = false;
   const auto note = [&](const Vec3d& place) {
@@ -119,7 +121,8 @@ SurfaceDefects surface_defects(const TriMesh& mesh) {
 
   if (defects.non_finite_vertices == 0) {
     const PerTriangle<char> collinear = surface::collinear_triangles(mesh);
-    const PerTriangle<char> intersecting = surface::intersecting_triangles(mesh, collinear);
+    const PerTriangle<char> intersecting = with_intersections ? surface::intersecting_triangles(mesh, collinear)
+                                                              : PerTriangle<char>(mesh.triangle_count(), 0);
     for (const TriangleId t : all_ids<TriangleId>(mesh.triangle_count())) {
       defects.degenerate_triangles += collinear[t] ? 1 : 0;
       defects.self_intersecting_triangles += intersecting[t] ? 1 : 0;
@@ -136,5 +139,11 @@ SurfaceDefects surface_defects(const TriMesh& mesh) {
   }
   return defects;
 }
+
+} // namespace
+
+SurfaceDefects surface_defects(const TriMesh& mesh) { return defects_of(mesh, true); }
+
+SurfaceDefects surface::defects_but_intersections(const TriMesh& mesh) { return defects_of(mesh, false); }
 
 } // namespace pith

@@ -12,4 +12,7 @@ PerTriangle<char> collinear_triangles(const TriMesh& mesh);
 /// Cost: 0.1 s for 80,000 triangles of a clean surface.
 PerTriangle<char> intersecting_triangles(const TriMesh& mesh, const PerTriangle<char>& collinear);
 
+/// `surface_defects` without the search for self-intersections, which is most of its cost.
+SurfaceDefects defects_but_intersections(const TriMesh& mesh);
+
 } // namespace pith::surface

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 
 namespace pith {
 namespace {
@@ -90,8 +91,10 @@ void face_away_from_material(const surface::Repaired& ready, const surface::Regi
 }
 
 /// Tets inside a clean surface; fills `mesh` and `input` of the result. Returns why not, or nothing.
+/// `meanwhile` runs beside TetGen; when it returns false TetGen is stopped and nothing else is tried.
 std::string fill_clean(surface::Repaired ready, const std::string& name, const TetrahedralizeOptions& options,
-                       const Progress& progress, TetrahedralizeResult& result) {
+                       const Progress& progress, TetrahedralizeResult& result,
+                       const std::function<bool()>& meanwhile = {}) {
   surface::drop_unused_vertices(ready.mesh);
   if (options.boundary_edge > 0) surface::split_long_edges(ready, options.boundary_edge, name);
   std::size_t turned = 0;
@@ -119,8 +122,9 @@ std::string fill_clean(surface::Repaired ready, const std::string& name, const T
   for (int attempt = 0; attempt < 3; ++attempt) {
     if (attempt == 1) settings.radius_edge = 0;
     if (attempt == 2) settings.max_volume = 0;
-    tetgen::Outcome outcome = tetgen::run(ready.mesh, settings, progress);
+    tetgen::Outcome outcome = tetgen::run(ready.mesh, settings, progress, attempt == 0 ? meanwhile : nullptr);
     std::string wrong = outcome.failure;
+    if (outcome.stopped) return wrong;
     TetMesh mesh;
     std::vector<TriangleId> input;
     if (wrong.empty()) {
@@ -210,10 +214,30 @@ TetrahedralizeResult tetrahedralize(const TriMesh& input, const std::string& nam
     mesh_wrap(input, ready.mesh, name, "a wrap was asked for", options, progress, result);
     return result;
   }
-  SurfaceDefects defects = surface_defects(ready.mesh);
-  if (!surface::can_be_filled(defects) && options.method == Method::tetgen)
+  // Where all else is in order, self-intersections are looked for while TetGen already works.
+  SurfaceDefects defects = surface::defects_but_intersections(ready.mesh);
+  if (surface::can_be_filled(defects)) {
+    bool crossing = false;
+    result.surface = input;
+    result.method = "tetgen";
+    if (!ready.note.empty()) result.note = "mended in place: " + ready.note;
+    const std::string failure = fill_clean(ready, name, options, progress, result, [&] {
+      const PerTriangle<char> found = surface::intersecting_triangles(ready.mesh, collinear);
+      crossing = std::count(found.begin(), found.end(), 1) > 0;
+      return !crossing;
+    });
+    if (failure.empty()) return result;
+    result = {};
+    if (!crossing) { // a clean surface that is beyond TetGen
+      if (options.method == Method::tetgen) throw SolverFailure(name + ": " + failure, 0);
+      mesh_wrap(input, ready.mesh, name, failure, options, progress, result);
+      return result;
+    }
+  }
+  defects = surface_defects(ready.mesh);
+  if (options.method == Method::tetgen)
     throw InvalidInput(name, "the surface has " + defects.summary(), "repair the surface, or allow pith to mend it");
-  const std::string fault = surface::can_be_filled(defects) ? "" : "the surface has " + defects.summary();
+  const std::string fault = "the surface has " + defects.summary();
   std::string mended = ready.note;
   double widest = 0;
   if (const std::size_t holes = defects.border_edges > 0 ? surface::close_holes(ready, widest) : 0; holes > 0) {
@@ -246,7 +270,6 @@ TetrahedralizeResult tetrahedralize(const TriMesh& input, const std::string& nam
     result.surface_moved = moved;
     const std::string failure = fill_clean(ready, name, options, progress, result);
     if (failure.empty()) return result;
-    if (options.method == Method::tetgen) throw SolverFailure(name + ": " + failure, 0);
     join(reason, failure);
   }
   result = {};

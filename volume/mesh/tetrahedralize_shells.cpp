@@ -10,19 +10,27 @@
 namespace pith::surface {
 
 std::vector<EdgeSide> edge_sides(const TriMesh& mesh) {
-  std::vector<EdgeSide> sides;
-  sides.reserve(3 * mesh.triangle_count());
-  for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
-    const auto& corner = mesh.corner[TriangleId(t)];
-    if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = corner[k], to = corner[(k + 1) % 3];
-      sides.push_back({std::min(from, to), std::max(from, to), 3 * t + k, from < to});
+  // A counting sort by the lower vertex; inside a bucket (half a dozen sides) by the rest.
+  const auto for_each_side = [&](const auto& body) {
+    for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
+      const auto& corner = mesh.corner[TriangleId(t)];
+      if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t from = corner[k], to = corner[k == 2 ? 0 : k + 1];
+        body(EdgeSide{std::min(from, to), std::max(from, to), 3 * t + k, from < to});
+      }
     }
-  }
-  std::sort(sides.begin(), sides.end(), [](const EdgeSide& a, const EdgeSide& b) {
-    return a.low != b.low ? a.low < b.low : a.high != b.high ? a.high < b.high : a.corner < b.corner;
-  });
+  };
+  std::vector<std::uint32_t> next(mesh.vertex_count() + 1, 0);
+  for_each_side([&](const EdgeSide& side) { ++next[side.low + 1]; });
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<EdgeSide> sides(next.back());
+  const std::vector<std::uint32_t> begin = next;
+  for_each_side([&](const EdgeSide& side) { sides[next[side.low]++] = side; });
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
+    std::sort(sides.begin() + begin[v], sides.begin() + begin[v + 1], [](const EdgeSide& a, const EdgeSide& b) {
+      return a.high != b.high ? a.high < b.high : a.corner < b.corner;
+    });
   return sides;
 }
 

@@ -205,7 +205,8 @@ void take_result(int file, Outcome& outcome) {
 
 } // namespace
 
-Outcome run(const TriMesh& surface, const Settings& settings, const Progress& progress) {
+Outcome run(const TriMesh& surface, const Settings& settings, const Progress& progress,
+            const std::function<bool()>& meanwhile) {
   const std::filesystem::path helper = helper_path(settings);
   File in(::memfd_create("pith-tetgen-problem", MFD_CLOEXEC)), out(::memfd_create("pith-tetgen-result", MFD_CLOEXEC));
   int ends[2];
@@ -226,6 +227,11 @@ Outcome run(const TriMesh& surface, const Settings& settings, const Progress& pr
   Process process(helper, in, out, messages_of_helper);
   messages_of_helper.close();
   Outcome outcome;
+  if (meanwhile && !meanwhile()) {
+    outcome.failure = "stopped";
+    outcome.stopped = true;
+    return outcome;
+  }
   std::string said;
   if (!wait_for_end(messages, said, settings.time_limit, progress)) {
     outcome.failure = "TetGen did not end within " + std::to_string(static_cast<long>(settings.time_limit)) + " s";

@@ -4,6 +4,7 @@
 #include "volume/mesh/tri_mesh.h"
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 namespace pith::tetgen {
@@ -19,12 +20,14 @@ struct Settings {
 struct Outcome {
   PerVertex<Vec3d> position; ///< the surface's vertices first, unchanged
   PerTet<std::array<VertexId, 4>> corner;
-  std::string failure; ///< empty: it worked
+  std::string failure;  ///< empty: it worked
+  bool stopped = false; ///< the caller's `meanwhile` said so
 };
 
 /// Runs the helper and waits. The helper leaves no file behind, whatever becomes of it. The surface must be clean; if
 /// it is not, the outcome is a failure in words. The tets are as TetGen made them: the caller checks them. Throws
 /// IoFailure when the helper cannot be started, Cancelled on request.
-Outcome run(const TriMesh& surface, const Settings& settings, const Progress& progress);
+Outcome run(const TriMesh& surface, const Settings& settings, const Progress& progress,
+            const std::function<bool()>& meanwhile = {});
 
 } // namespace pith::tetgen
