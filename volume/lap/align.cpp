@@ -18,8 +18,8 @@ Exemplar reduced(const Exemplar& exemplar, int most) {
 
 /// A place where the new paste and older ones are both seen.
 struct Meeting {
-  std::array<float, 3> w;                      ///< coordinates of the new paste there
-  std::array<float, max_components> color;     ///< of the older ones, in bytes
+  std::array<float, 3> w;                  ///< coordinates of the new paste there, in texture widths
+  std::array<float, max_components> color; ///< of the older ones, in bytes
   float weight;
 };
 
@@ -54,7 +54,7 @@ double difference(const Exemplar& e, const std::vector<Meeting>& meetings, float
 
 } // namespace
 
-Aligner::Aligner(const Exemplar& exemplar) : coarse_(reduced(exemplar, 32)), fine_(reduced(exemplar, 128)) {}
+Aligner::Aligner(const Exemplar& exemplar) : coarse_(reduced(exemplar, 16)), fine_(reduced(exemplar, 64)) {}
 
 std::array<float, 4> Aligner::phase(const Pastes& pastes, const Simplices& mesh, const Paste& paste,
                                     const std::array<float, 4>& random) const {
@@ -62,7 +62,7 @@ std::array<float, 4> Aligner::phase(const Pastes& pastes, const Simplices& mesh,
   const Clump& clump = paste.growth.clump;
   const Mask& mask = pastes.masks()[paste.patch.mask];
   const int n = mesh.corners, components = coarse_.component_count();
-  constexpr std::size_t enough = 160;
+  constexpr std::size_t enough = 96;
 
   // Where older pastes fade out and this one shows below them: that is the seam somebody would see.
   std::vector<Meeting> meetings;
@@ -80,10 +80,12 @@ std::array<float, 4> Aligner::phase(const Pastes& pastes, const Simplices& mesh,
           m.w[a] += samples[i][c] * static_cast<float>(clump.coordinate[clump.corner[s * n + c] * 3 + a]);
       const float alpha = mask.value(m.w.data());
       if (alpha < 0.1f) continue;
+      for (int a = 0; a < 3; ++a) m.w[a] *= paste.patch.frame.scale[a];
       float through = 1;
       pastes.visit(simplex, samples[i], [&](const Patch& patch, const std::array<float, 4>& w, float a) {
-        const std::uint8_t* texel = nearest_texel(
-            coarse_, {w[0] + patch.frame.offset[0], w[1] + patch.frame.offset[1], w[2] + patch.frame.offset[2]});
+        std::array<float, 3> u;
+        for (int k = 0; k < 3; ++k) u[k] = patch.frame.scale[k] * w[k] + patch.frame.offset[k];
+        const std::uint8_t* texel = nearest_texel(coarse_, u);
         for (int c = 0; c < components; ++c) m.color[c] += through * a * texel[c];
         through *= 1 - a;
         return through > 0.01f;

@@ -1,6 +1,7 @@
 #pragma once
-// Where in the exemplar a new paste starts, so that it continues what is already pasted: the phase along the repeating
-// axes with the least difference where both are seen. Beyond the paper, which leaves misalignment as a limitation (§7).
+// Where in the exemplar a new paste starts, so that it continues what is already pasted: the phase along the
+// repeating axes with the least difference where both are seen. Beyond the paper, which leaves misalignment as a
+// limitation (§7).
 #include "volume/lap/pastes.h"
 
 namespace pith {

@@ -7,15 +7,15 @@
 
 namespace pith {
 
-/// The barycentric lattice of order n of a simplex with `corners` corners: (i, j, k, l)/n with i + j + k + l = n. Order 8 of
-/// a tet has the paper's 165 points.
+/// The barycentric lattice of order n of a simplex with `corners` corners: (i, j, k, l)/n with i + j + k + l = n.
+/// Order 8 of a tet has the paper's 165 points.
 struct SampleLattice {
   explicit SampleLattice(int corners, int order);
   std::vector<std::array<float, 4>> barycentric;
 };
 
-/// What shines through at every sample of every simplex: 1 uncovered, 0 opaque. Each simplex has a lattice whose spacing is
-/// at most `spacing` texture widths, up to `largest_order`.
+/// What shines through at every sample of every simplex: 1 uncovered, 0 opaque. Each simplex has a lattice whose
+/// spacing is at most `spacing` texture widths, up to `largest_order`.
 class Coverage {
 public:
   /// `size`: for each simplex its longest edge in texture widths; simplices with size < 0 are left out (never open).

@@ -18,14 +18,17 @@ void GrowWorkspace::begin(std::size_t simplices, std::size_t vertices) {
 
 namespace {
 
-constexpr float little_confidence = 0.02f; ///< of simplices whose frame is not the seed's, where they are taken at all
+constexpr float little_confidence =
+    0.02f; ///< of simplices whose frame is not the seed's, where they are taken at all
 
 class Grower {
 public:
   Grower(const Simplices& mesh, const GrowField& field, const Mask& mask, std::uint32_t seed,
-         const std::array<double, 3>& pin, const std::array<float, 4>& at, const GrowRule& rule, GrowWorkspace& workspace)
+         const std::array<double, 3>& pin, const std::array<float, 4>& at, const GrowRule& rule,
+         GrowWorkspace& workspace)
       : mesh_(mesh), field_(field), mask_(mask), rule_(rule), workspace_(workspace), seed_axes_(field.axes[seed]),
-        seed_scale_(field.scale[seed]), pin_(pin), pin_at_(at), smallest_trace_(1 + 2 * std::cos(rule.frame_tolerance)) {
+        seed_scale_(field.scale[seed]), pin_(pin), pin_at_(at),
+        smallest_trace_(1 + 2 * std::cos(rule.frame_tolerance)) {
     workspace_.begin(mesh.count, mesh.vertex_count);
     Clump& clump = growth_.clump;
     clump.axes = mask.axes;
@@ -34,14 +37,13 @@ public:
     for (int i = 0; i < mesh_.corners; ++i) center += at[i] * position(corner(seed, i));
     for (int i = 0; i < mesh_.corners; ++i) {
       const std::uint32_t v = corner(seed, i);
-      for (int a = 0; a < clump.axes; ++a)
-        set_coordinate(v, a, pin[a] + target(0, a).dot(position(v) - center));
+      for (int a = 0; a < clump.axes; ++a) set_coordinate(v, a, pin[a] + target(0, a).dot(position(v) - center));
     }
   }
 
   Growth run() {
     expand(0);
-    for (int pass = 0; pass < 5; ++pass) {
+    for (int pass = 0; pass < 3; ++pass) {
       warp_clump();
       const std::size_t before = growth_.clump.simplex.size();
       expand(0);
@@ -56,7 +58,9 @@ public:
   }
 
 private:
-  std::uint32_t corner(std::uint32_t simplex, int i) const { return mesh_.corner[std::size_t(simplex) * mesh_.corners + i]; }
+  std::uint32_t corner(std::uint32_t simplex, int i) const {
+    return mesh_.corner[std::size_t(simplex) * mesh_.corners + i];
+  }
   const Vec3d& position(std::uint32_t vertex) const { return mesh_.position[vertex]; }
   bool imposed(int axis) const { return axis == 1 && !field_.depth.empty(); }
 
@@ -65,12 +69,13 @@ private:
         imposed(axis) ? field_.depth[vertex] : value;
   }
 
-  /// The gradient that coordinate `axis` should have on clump simplex `local`: its frame's axis over its scale, or the
-  /// seed's where the simplex' own frame does not count.
+  /// The gradient that coordinate `axis` should have on clump simplex `local`: its frame's axis over its scale, or
+  /// the seed's where the simplex' own frame does not count.
   Vec3d target(std::uint32_t local, int axis) const {
     const std::uint32_t s = growth_.clump.simplex[local];
-    return growth_.clump.confidence[local] == 1 ? Vec3d(field_.axes[s].col(axis) / field_.scale[s])
-                                                : Vec3d(seed_axes_.col(axis) / seed_scale_);
+    return growth_.clump.confidence[local] == 1
+               ? Vec3d(field_.axes[s].col(axis) / (field_.scale[s] * field_.extent[axis]))
+               : Vec3d(seed_axes_.col(axis) / (seed_scale_ * field_.extent[axis]));
   }
 
   void add_simplex(std::uint32_t s) {
@@ -117,7 +122,8 @@ private:
         ++known;
         const Vec3d step = position(corner(s, i)) - position(corner(s, j));
         for (int a = 0; a < axes; ++a)
-          w[i][a] += growth_.clump.coordinate[local[j] * axes + a] + frame.col(a).dot(step) / scale;
+          w[i][a] +=
+              growth_.clump.coordinate[local[j] * axes + a] + frame.col(a).dot(step) / (scale * field_.extent[a]);
       }
       for (int a = 0; a < axes; ++a) w[i][a] = imposed(a) ? field_.depth[corner(s, i)] : w[i][a] / known;
     }
@@ -126,9 +132,9 @@ private:
   /// Partly under the mask: at a corner, the middle of an edge, or the barycentre.
   bool under_mask(const std::array<std::array<double, 3>, 4>& w, int corners) const {
     const auto opaque_at = [&](auto&&... i) {
-      std::array<float, 3> p{};
-      for (int a = 0; a < mask_.axes; ++a) p[a] = static_cast<float>((w[i][a] + ...) / sizeof...(i));
-      return mask_.value(p.data()) > 0;
+      std::array<double, 3> p{};
+      for (int a = 0; a < mask_.axes; ++a) p[a] = (w[i][a] + ...) / sizeof...(i);
+      return mask_.touches(p.data());
     };
     for (int i = 0; i < corners; ++i) {
       if (opaque_at(i)) return true;

@@ -8,22 +8,27 @@ namespace pith {
 
 /// The frames that a paste follows.
 struct GrowField {
-  std::span<const Mat3d> axes;    ///< per simplex: unit columns, one per texture axis
-  std::span<const float> scale;   ///< per simplex: mm per texture width
-  std::span<const float> depth;   ///< per vertex: becomes coordinate 1 as it is; empty: all coordinates are solved for
+  std::span<const Mat3d> axes;           ///< per simplex: unit columns, one per texture axis
+  std::span<const float> scale;          ///< per simplex: mm per texture width
+  std::array<double, 3> extent{1, 1, 1}; ///< texture widths that the mask's unit cube spans along each axis
+  std::span<const float> depth; ///< per vertex: becomes coordinate 1 as it is; empty: all coordinates are solved for
 };
 
 struct GrowRule {
-  double frame_tolerance = 1.1;   ///< radians; simplices that turn further from the seed's frame are left out
-  bool through = false;           ///< take them all the same, with little confidence (singular places)
+  double frame_tolerance = 1.1; ///< radians; simplices that turn further from the seed's frame are left out
+  bool through = false;         ///< take them all the same, with little confidence (singular places)
 };
 
 /// Memory that is used again from paste to paste: which simplices and vertices are in the clump.
 class GrowWorkspace {
 public:
   void begin(std::size_t simplices, std::size_t vertices);
-  std::uint32_t local_simplex(std::uint32_t s) const { return simplex_stamp_[s] == stamp_ ? simplex_[s] : Simplices::none; }
-  std::uint32_t local_vertex(std::uint32_t v) const { return vertex_stamp_[v] == stamp_ ? vertex_[v] : Simplices::none; }
+  std::uint32_t local_simplex(std::uint32_t s) const {
+    return simplex_stamp_[s] == stamp_ ? simplex_[s] : Simplices::none;
+  }
+  std::uint32_t local_vertex(std::uint32_t v) const {
+    return vertex_stamp_[v] == stamp_ ? vertex_[v] : Simplices::none;
+  }
   void set_simplex(std::uint32_t s, std::uint32_t local) { simplex_stamp_[s] = stamp_, simplex_[s] = local; }
   void set_vertex(std::uint32_t v, std::uint32_t local) { vertex_stamp_[v] = stamp_, vertex_[v] = local; }
 
@@ -35,12 +40,12 @@ private:
 /// A grown and warped clump.
 struct Growth {
   Clump clump;
-  std::vector<float> weight;     ///< per clump vertex: 0 where growth stopped under the mask, else 1
+  std::vector<float> weight; ///< per clump vertex: 0 where growth stopped under the mask, else 1
   int warp_iterations = 0;
 };
 
-/// Grows from `seed`, whose point `pin_barycentric` goes to `pin` (texture widths), warps, and grows again while the warped
-/// mask reaches past the clump (§5.2.5, last paragraph).
+/// Grows from `seed`, whose point `pin_barycentric` goes to `pin` (in the mask's unit cube), warps, and grows again
+/// while the warped mask reaches past the clump (§5.2.5, last paragraph).
 Growth grow(const Simplices& mesh, const GrowField& field, const Mask& mask, std::uint32_t seed,
             const std::array<double, 3>& pin, const std::array<float, 4>& pin_barycentric, const GrowRule& rule,
             GrowWorkspace& workspace);

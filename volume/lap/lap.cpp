@@ -1,9 +1,10 @@
 // Takayama, Okabe, Ijiri, Igarashi: Lapped Solid Textures (SIGGRAPH 2008), §5.2.
 //
-// Order of work: masks (§5.2.1) → rounds of { seeds (§5.2.3) → grow and warp (§5.2.4, §5.2.5; depth as coordinate §5.2.7) →
-// coverage (§5.2.6) } until no tet is open. Departures: newer pastes lie beneath older ones; seeds are chosen by a hash of
-// their place instead of a running random number, in rounds of seeds that keep apart, so that the fill runs in parallel
-// and a local edit changes it locally; the seed's point is one that is still open instead of the barycentre.
+// Order of work: masks (§5.2.1) → rounds of { seeds (§5.2.3) → grow and warp (§5.2.4, §5.2.5; depth as coordinate
+// §5.2.7) → coverage (§5.2.6) } until no tet is open. Departures: newer pastes lie beneath older ones; seeds are
+// chosen by a hash of their place instead of a running random number, in rounds of seeds that keep apart, so that the
+// fill runs in parallel and a local edit changes it locally; the seed's point is one that is still open instead of
+// the barycentre.
 #include "volume/lap/lap.h"
 
 #include "volume/base/error.h"
@@ -24,9 +25,9 @@ constexpr std::uint64_t stage = 0x1a9; // of random numbers
 void check(const LapInput& input, const Exemplar& exemplar, const LapOptions& options) {
   const std::size_t tets = input.mesh.tet_count();
   if (input.axes.size() != tets || input.scale.size() != tets)
-    throw InvalidInput("fill", "was given frames for " + std::to_string(input.axes.size()) + " of " + std::to_string(tets) +
-                                   " tets",
-                       "make frames for the whole mesh first");
+    throw InvalidInput(
+        "fill", "was given frames for " + std::to_string(input.axes.size()) + " of " + std::to_string(tets) + " tets",
+        "make frames for the whole mesh first");
   validate(exemplar);
   const std::string where = "exemplar '" + exemplar.name + "'";
   if (exemplar.axes != 3) throw InvalidInput(where, "is not a volume", "a solid is filled from a volume of 3 axes");
@@ -40,10 +41,16 @@ void check(const LapInput& input, const Exemplar& exemplar, const LapOptions& op
     throw InvalidInput(where, "does not repeat along axis 1", "type 2-a needs wrap 'repeat' along all axes");
 }
 
-/// Outer, middle and inner masks (Fig. 14), or whole ones, each in a few variants.
+/// Outer, middle and inner masks (Fig. 14) where the texture varies with depth.
+std::vector<SplotchPart> parts_of(TextureType type) {
+  if (type == TextureType::tensor_2b) return {SplotchPart::outer, SplotchPart::middle, SplotchPart::inner};
+  return {SplotchPart::whole};
+}
+
+/// Each part's masks in a few variants, one part after the other.
 std::vector<Mask> masks_of(const LapOptions& options) {
   std::vector<Mask> masks;
-  const auto add = [&](SplotchPart part) {
+  for (SplotchPart part : parts_of(options.type))
     for (int variant = 0; variant < options.mask_variants; ++variant) {
       SplotchOptions splotch = options.splotch;
       splotch.axes = 3;
@@ -51,12 +58,6 @@ std::vector<Mask> masks_of(const LapOptions& options) {
       splotch.seed = hash_of(options.seed, stage, variant, splotch.seed);
       masks.push_back(splotch_mask(splotch, part));
     }
-  };
-  if (options.type == TextureType::tensor_2b) {
-    for (SplotchPart part : {SplotchPart::outer, SplotchPart::middle, SplotchPart::inner}) add(part);
-  } else {
-    add(SplotchPart::whole);
-  }
   return masks;
 }
 
@@ -72,7 +73,8 @@ public:
       : input_(input), options_(options), mesh_(simplices_of(input.mesh, input.region)),
         pastes_(mesh_, coverage(), masks_of(options)), aligner_(exemplar), attempts_(mesh_.count, 0),
         workspace_(most_seeds) {
-    field_ = {input.axes, input.scale, {}};
+    field_.axes = input.axes;
+    field_.scale = input.scale;
     if (options.type == TextureType::tensor_2b) field_.depth = input.depth;
     for (std::uint32_t s = 0; s < mesh_.count; ++s)
       if (pastes_.coverage().open(s)) queue_.push_back(s);
@@ -147,7 +149,8 @@ private:
       if (pastes_.coverage().open(seeds[i]) && ++attempts_[seeds[i]] > options_.max_attempts) {
         const Vec3d& at = mesh_.center[seeds[i]];
         throw SolverFailure("fill: the tet near (" + std::to_string(at.x()) + ", " + std::to_string(at.y()) + ", " +
-                                std::to_string(at.z()) + ") stays uncovered after " + std::to_string(attempts_[seeds[i]]) +
+                                std::to_string(at.z()) + ") stays uncovered after " +
+                                std::to_string(attempts_[seeds[i]]) +
                                 " pastes; make the tets smaller than the texture (tetrahedralize/interior_edge)",
                             *std::max_element(pastes_.coverage().shining(seeds[i]).begin(),
                                               pastes_.coverage().shining(seeds[i]).end()));
@@ -164,16 +167,20 @@ private:
     if (!field_.depth.empty()) {
       pin[1] = 0; // (½, d_seed, ½), §5.2.7
       for (int i = 0; i < 4; ++i) pin[1] += at[i] * field_.depth[mesh_.corner[4 * std::size_t(seed) + i]];
-      part = pin[1] < 0.25 ? 0 : pin[1] > 0.75 ? 2 : 1;
+      part = pin[1] < 0.2 ? 0 : pin[1] > 0.8 ? 2 : 1;
     }
+    GrowField field = field_;
+    field.extent.fill(splotch_extent(options_.splotch, parts_of(options_.type)[part]));
+    if (!field.depth.empty()) field.extent[1] = 1;
+    for (int a = 0; a < 3; ++a) paste.patch.frame.scale[a] = static_cast<float>(field.extent[a]);
     Random random(paste.patch.key);
     paste.patch.mask = part * options_.mask_variants + random.below(options_.mask_variants);
 
     // A seed that its paste failed to cover is tried again with more freedom: first a wider tolerance, then none.
     GrowRule rule;
     rule.frame_tolerance = options_.frame_tolerance * (attempts_[seed] > 0 ? 1.5 : 1);
-    rule.through = attempts_[seed] > 1;
-    paste.growth = grow(mesh_, field_, pastes_.masks()[paste.patch.mask], seed, pin, at, rule, workspace);
+    rule.through = attempts_[seed] > 1 || part == 2; // the innermost holds the axis, where frames turn all around
+    paste.growth = grow(mesh_, field, pastes_.masks()[paste.patch.mask], seed, pin, at, rule, workspace);
     pastes_.look(paste);
     std::array<float, 4> phase{};
     phase[0] = static_cast<float>(random.uniform());

@@ -23,9 +23,9 @@ struct LapInput {
   const TetMesh& mesh;
   const Boundary& boundary;
   std::int32_t region = 0;
-  std::span<const Mat3d> axes;    ///< per tet: columns R, S, T, unit
-  std::span<const float> scale;   ///< per tet: mm per texture width
-  std::span<const float> depth;   ///< per vertex, 0 … 1 (types that vary with depth)
+  std::span<const Mat3d> axes;            ///< per tet: columns R, S, T, unit
+  std::span<const float> scale;           ///< per tet: mm per texture width
+  std::span<const float> depth;           ///< per vertex, 0 … 1 (types that vary with depth)
   std::span<const std::uint8_t> singular; ///< per tet; may be empty
 };
 
@@ -33,19 +33,19 @@ struct LapOptions {
   TextureType type = TextureType::tensor_2b;
   std::uint64_t seed = 1;
   SplotchOptions splotch;
-  int mask_variants = 3;           ///< splotches of different outline for each part
-  double frame_tolerance = 1.1;    ///< largest angle between a tet's axes and the seed's, radians (§5.2.4)
-  double sample_spacing = 0.03;    ///< of the coverage test, in texture widths
-  int coverage_order = 8;          ///< most samples per tet edge in that test: order 8 gives the paper's 165 points
-  bool align = true;               ///< choose each paste's phase so that it continues what is already there; false: at random
-  int max_attempts = 12;           ///< pastes on one tet before the fill is given up
+  int mask_variants = 3;        ///< splotches of different outline for each part
+  double frame_tolerance = 2.0; ///< largest angle between a tet's axes and the seed's, radians (§5.2.4)
+  double sample_spacing = 0.03; ///< of the coverage test, in texture widths
+  int coverage_order = 8;       ///< most samples per tet edge in that test: order 8 gives the paper's 165 points
+  bool align = true;     ///< choose each paste's phase so that it continues what is already there; false: at random
+  int max_attempts = 12; ///< pastes on one tet before the fill is given up
 };
 
 struct LapStatistics {
   std::size_t pastes = 0, rounds = 0;
-  std::size_t lookups = 0;             ///< only those that can be seen are kept
+  std::size_t lookups = 0; ///< only those that can be seen are kept
   std::size_t warp_iterations = 0;
-  double median_share_used = 0;        ///< of a mask's alpha, the part that lies on tets of its clump: median over pastes
+  double median_share_used = 0; ///< of a mask's alpha, the part that lies on tets of its clump: median over pastes
 };
 
 struct LapResult {
@@ -53,10 +53,10 @@ struct LapResult {
   LapStatistics statistics;
 };
 
-/// Fills a region. The result is the same for any number of threads. Errors: InvalidInput when the exemplar does not fit
-/// the type or spans have the wrong length; SolverFailure when some tet cannot be covered; Cancelled.
-/// Departures from the paper: new pastes go beneath the older ones, so that a look-up that nothing can see is never made
-/// (the picture is as the paper's with the order reversed); the fill runs in parallel rounds.
+/// Fills a region. The result is the same for any number of threads. Errors: InvalidInput when the exemplar does not
+/// fit the type or spans have the wrong length; SolverFailure when some tet cannot be covered; Cancelled. Departures
+/// from the paper: new pastes go beneath the older ones, so that a look-up that nothing can see is never made (the
+/// picture is as the paper's with the order reversed); the fill runs in parallel rounds.
 LapResult lap(const LapInput& input, const Exemplar& exemplar, const LapOptions& options = {},
               const Progress& progress = {});
 

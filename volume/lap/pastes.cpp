@@ -112,7 +112,8 @@ Layer Pastes::take_layer() {
   layer.begin.reserve(mesh_.count + 1);
   layer.lookup.reserve(lookup_.size());
   for (std::uint32_t simplex = 0; simplex < mesh_.count; ++simplex) {
-    for (std::uint32_t node = newest_[simplex]; node != none; node = older_[node]) layer.lookup.push_back(lookup_[node]);
+    for (std::uint32_t node = newest_[simplex]; node != none; node = older_[node])
+      layer.lookup.push_back(lookup_[node]);
     layer.begin.push_back(static_cast<std::uint32_t>(layer.lookup.size()));
   }
   return layer;

@@ -10,9 +10,9 @@ namespace pith {
 struct Paste {
   Patch patch;
   Growth growth;
-  float share_used = 0;                     ///< of the mask's alpha, the part that lies on the clump
-  std::vector<std::uint32_t> shown;         ///< clump simplices (local numbers) on which it can be seen
-  std::vector<float> let_through;           ///< for each of them, its samples' 1 − alpha, one after the other
+  float share_used = 0;             ///< of the mask's alpha, the part that lies on the clump
+  std::vector<std::uint32_t> shown; ///< clump simplices (local numbers) on which it can be seen
+  std::vector<float> let_through;   ///< for each of them, its samples' 1 − alpha, one after the other
 };
 
 /// Pastes in order, newest beneath (see lap.h). Reading is safe from many threads between two commits.
@@ -30,18 +30,20 @@ public:
   /// Puts the paste beneath all earlier ones.
   void commit(const Paste& paste);
 
-  /// Alpha and coordinates of the pastes that show at a sample, uppermost first: visit(patch, coordinates, alpha) until it
-  /// returns false.
+  /// Alpha and coordinates of the pastes that show at a sample, uppermost first: visit(patch, coordinates, alpha)
+  /// until it returns false.
   template <class Visit>
   void visit(std::uint32_t simplex, const std::array<float, 4>& barycentric, const Visit& see) const {
     std::array<std::uint32_t, 64> row;
     std::size_t rows = 0;
-    for (std::uint32_t node = newest_[simplex]; node != none && rows < row.size(); node = older_[node]) row[rows++] = node;
+    for (std::uint32_t node = newest_[simplex]; node != none && rows < row.size(); node = older_[node])
+      row[rows++] = node;
     while (rows-- > 0) {
       const Lookup& lookup = lookup_[row[rows]];
       std::array<float, 4> w{};
       for (int i = 0; i < mesh_.corners; ++i)
-        for (int k = 0; k <= axes_; ++k) w[k] += barycentric[i] * corner_[std::size_t(lookup.corner[i]) * (axes_ + 1) + k];
+        for (int k = 0; k <= axes_; ++k)
+          w[k] += barycentric[i] * corner_[std::size_t(lookup.corner[i]) * (axes_ + 1) + k];
       const Patch& patch = patch_[lookup.patch];
       const float alpha = w[axes_] > 0 ? w[axes_] * masks_[patch.mask].value(w.data()) : 0.0f;
       if (alpha > 0 && !see(patch, w, alpha)) return;
@@ -60,9 +62,9 @@ private:
   int axes_;
   std::vector<Patch> patch_;
   std::vector<float> corner_;
-  std::vector<Lookup> lookup_;              ///< in order of commit
-  std::vector<std::uint32_t> newest_;       ///< per simplex, its latest look-up
-  std::vector<std::uint32_t> older_;        ///< per look-up, the one before it on the same simplex
+  std::vector<Lookup> lookup_;        ///< in order of commit
+  std::vector<std::uint32_t> newest_; ///< per simplex, its latest look-up
+  std::vector<std::uint32_t> older_;  ///< per look-up, the one before it on the same simplex
 };
 
 } // namespace pith

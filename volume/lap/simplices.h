@@ -1,11 +1,12 @@
 #pragma once
-// What patch growing, warping and coverage need of a mesh, the same for the tets of a solid and the triangles of a skin.
+// What patch growing, warping and coverage need of a mesh, the same for the tets of a solid and the triangles of a
+// skin.
 #include "volume/mesh/tet_mesh.h"
 
 namespace pith {
 
-/// Simplices with `corners` corners each (4: tets, 3: triangles), their adjacency and the gradients of their barycentric
-/// coordinates. Row i of the flat arrays starts at i · corners.
+/// Simplices with `corners` corners each (4: tets, 3: triangles), their adjacency and the gradients of their
+/// barycentric coordinates. Row i of the flat arrays starts at i · corners.
 struct Simplices {
   int corners = 4;
   std::vector<std::uint32_t> corner;

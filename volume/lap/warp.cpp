@@ -1,7 +1,7 @@
-// Takayama et al. 2008, §5.2.5. The paper minimises, per tet, the differences d_r, d_s, d_t between the transformed axes
-// and the texture's; with R̃ = R/|R|² that is |∇u_a − R̃_a|² for each coordinate u_a, so the axes decouple and all share
-// one matrix, Σ w ∇λᵢ·∇λⱼ: a discrete Laplacian. We weight by volume (the paper counts tets), so that the result does
-// not depend on how finely a place is meshed.
+// Takayama et al. 2008, §5.2.5. The paper minimises, per tet, the differences d_r, d_s, d_t between the transformed
+// axes and the texture's; with R̃ = R/|R|² that is |∇u_a − R̃_a|² for each coordinate u_a, so the axes decouple and all
+// share one matrix, Σ w ∇λᵢ·∇λⱼ: a discrete Laplacian. We weight by volume (the paper counts tets), so that the
+// result does not depend on how finely a place is meshed.
 #include "volume/lap/warp.h"
 
 #include <algorithm>
@@ -26,7 +26,8 @@ Matrix laplacian(const Simplices& mesh, const Clump& clump, const std::vector<do
   for (std::uint32_t c : clump.corner) ++first[c + 1];
   for (std::size_t v = 0; v < vertices; ++v) first[v + 1] += first[v];
   std::vector<std::uint32_t> fill(first.begin(), first.end() - 1);
-  for (std::size_t i = 0; i < clump.corner.size(); ++i) incident[fill[clump.corner[i]]++] = static_cast<std::uint32_t>(i);
+  for (std::size_t i = 0; i < clump.corner.size(); ++i)
+    incident[fill[clump.corner[i]]++] = static_cast<std::uint32_t>(i);
 
   m.begin.reserve(vertices + 1);
   m.begin.push_back(0);

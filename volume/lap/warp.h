@@ -7,23 +7,23 @@ namespace pith {
 
 /// A clump of simplices with a numbering of its own vertices.
 struct Clump {
-  std::vector<std::uint32_t> simplex;     ///< of the mesh, in order of growth
-  std::vector<std::uint32_t> vertex;      ///< of the mesh, in order of growth
-  std::vector<std::uint32_t> corner;      ///< simplex.size() · corners local vertex numbers
-  std::vector<float> confidence;          ///< per simplex: weight of its equations, 0 … 1
-  int axes = 3;                           ///< coordinates per vertex
-  std::vector<double> coordinate;         ///< vertex.size() · axes
+  std::vector<std::uint32_t> simplex; ///< of the mesh, in order of growth
+  std::vector<std::uint32_t> vertex;  ///< of the mesh, in order of growth
+  std::vector<std::uint32_t> corner;  ///< simplex.size() · corners local vertex numbers
+  std::vector<float> confidence;      ///< per simplex: weight of its equations, 0 … 1
+  int axes = 3;                       ///< coordinates per vertex
+  std::vector<double> coordinate;     ///< vertex.size() · axes
 };
 
 struct WarpOptions {
-  double tolerance = 1e-4;  ///< of the coordinates' gradient residual, relative to the start's right-hand side
+  double tolerance = 1e-3; ///< of the coordinates' gradient residual, relative to the start's right-hand side
   int max_iterations = 400;
 };
 
-/// For each axis a with solve[a]: moves coordinate a so that its gradient on every simplex is close to target(simplex, a)
-/// (1/mm), weighted by measure · confidence · scale²; then shifts it so that it is `pin[a]` at the point
-/// `pin_barycentric` of clump.simplex[0]. Other axes stay. `target` holds axes gradients per clump simplex. Conjugate gradient with a diagonal
-/// preconditioner, from the coordinates given. Returns the iterations used.
+/// For each axis a with solve[a]: moves coordinate a so that its gradient on every simplex is close to
+/// target(simplex, a) (1/mm), weighted by measure · confidence · scale²; then shifts it so that it is `pin[a]` at the
+/// point `pin_barycentric` of clump.simplex[0]. Other axes stay. `target` holds axes gradients per clump simplex.
+/// Conjugate gradient with a diagonal preconditioner, from the coordinates given. Returns the iterations used.
 int warp(const Simplices& mesh, Clump& clump, const std::vector<Vec3d>& target, const std::vector<double>& weight,
          const std::array<bool, 3>& solve, const std::array<double, 3>& pin,
          const std::array<float, 4>& pin_barycentric, const WarpOptions& options = {});

@@ -1,5 +1,6 @@
 // The blend rules of all five methods (docs/design.md, idea 1): paste order (Praun 2000, Takayama 2008), weighted
-// (Ray 2009, §4.3), selection by effective height (Schuster 2020, §3.4.2) and histogram preservation (Heitz, Neyret 2018).
+// (Ray 2009, §4.3), selection by effective height (Schuster 2020, §3.4.2) and histogram preservation (Heitz, Neyret
+// 2018).
 #include "volume/layer/composite.h"
 
 #include <Eigen/LU>
@@ -194,8 +195,8 @@ Weighted weighted_lookups(const LayerReader& reader, std::span<const Lookup> loo
   return kept;
 }
 
-/// Schuster 2020, §3.4.2 and §3.5: effective heights w·h or w·(1 − h); those within the grace of the largest stay, with
-/// weight (h_e − max(0, h_e,max − Δh)) / Δh.
+/// Schuster 2020, §3.4.2 and §3.5: effective heights w·h or w·(1 − h); those within the grace of the largest stay,
+/// with weight (h_e − max(0, h_e,max − Δh)) / Δh.
 void select_by_height(const LayerReader& reader, const Blend& blend, Weighted& kept,
                       const std::array<std::array<float, max_components>, max_weighted_lookups>& value) {
   float largest = 0;
@@ -278,9 +279,14 @@ LayerCoverage coverage_of(const LayerReader& reader, std::span<const Lookup> loo
     shown_through *= 1 - std::min(alpha, 1.0f);
   }
   switch (reader.layer->blend.mix) {
-  case Blend::Mix::over: result.coverage = 1 - shown_through; break;
-  case Blend::Mix::weighted: result.coverage = std::min(1.0f, sum); break;
-  default: result.coverage = sum > 0 ? 1.0f : 0.0f;
+  case Blend::Mix::over:
+    result.coverage = 1 - shown_through;
+    break;
+  case Blend::Mix::weighted:
+    result.coverage = std::min(1.0f, sum);
+    break;
+  default:
+    result.coverage = sum > 0 ? 1.0f : 0.0f;
   }
   return result;
 }

@@ -17,11 +17,11 @@ struct LayerReader {
     DecodeTable decode;
   };
   const Layer* layer;
-  std::vector<Source> source;                    ///< per exemplar
-  std::vector<std::vector<Exemplar>> coarser;    ///< per exemplar, the mips that `level` points into
-  DecodeTable gaussian_decode;                   ///< bytes of a twin → standard deviations
+  std::vector<Source> source;                 ///< per exemplar
+  std::vector<std::vector<Exemplar>> coarser; ///< per exemplar, the mips that `level` points into
+  DecodeTable gaussian_decode;                ///< bytes of a twin → standard deviations
   int components = 0;
-  int height_component = -1;                     ///< of the first height channel
+  int height_component = -1; ///< of the first height channel
   bool has_directions = false;
 };
 
@@ -31,8 +31,8 @@ struct SimplexPoint {
   /// Gradients (1/mm) of the barycentric coordinates; on a facet tangent to it. Needed only for directions and
   /// footprints.
   std::array<Vec3d, 4> gradient{};
-  Vec3d normal = Vec3d::Zero();       ///< unit, of a facet
-  double footprint = 0;               ///< mm
+  Vec3d normal = Vec3d::Zero(); ///< unit, of a facet
+  double footprint = 0;         ///< mm
 };
 
 struct LayerValue {

@@ -37,7 +37,9 @@ std::uint8_t encoded(const Channel& channel, float value) {
 
 void validate(const Exemplar& e) {
   const std::string where = "exemplar '" + e.name + "'";
-  const auto refuse = [&](const std::string& what, const std::string& mend) { throw InvalidInput(where, what, mend); };
+  const auto refuse = [&](const std::string& what, const std::string& mend) {
+    throw InvalidInput(where, what, mend);
+  };
   if (e.axes < 2 || e.axes > 4) refuse("has " + std::to_string(e.axes) + " axes", "give 2, 3 or 4");
   for (int i = 0; i < 4; ++i)
     if (e.size[i] < 1 || e.size[i] > 8192 || (i >= e.axes && e.size[i] != 1))
@@ -54,12 +56,14 @@ void validate(const Exemplar& e) {
       refuse("channel '" + c.name + "' has an empty range", "give low < high");
   }
   if (e.component_count() > max_components)
-    refuse("has " + std::to_string(e.component_count()) + " components", "use at most " + std::to_string(max_components));
+    refuse("has " + std::to_string(e.component_count()) + " components",
+           "use at most " + std::to_string(max_components));
   const std::size_t bytes = e.texel_count() * e.component_count();
   if (e.texel.size() != bytes)
     refuse("holds " + std::to_string(e.texel.size()) + " bytes of texels, its size needs " + std::to_string(bytes),
            "make size, channels and texels agree");
-  if (!e.gaussian.empty() && (e.gaussian.size() != bytes || e.inverse.size() != std::size_t(e.component_count()) * 256))
+  if (!e.gaussian.empty() &&
+      (e.gaussian.size() != bytes || e.inverse.size() != std::size_t(e.component_count()) * 256))
     refuse("has a Gaussian twin of another size", "make it anew with make_gaussian_twin");
 }
 
@@ -69,8 +73,8 @@ namespace {
 double normal_quantile(double p) {
   constexpr double a[] = {-3.969683028665376e+01, 2.209460984245205e+02,  -2.759285104469687e+02,
                           1.383577518672690e+02,  -3.066479806614716e+01, 2.506628277459239e+00};
-  constexpr double b[] = {-5.447609879822406e+01, 1.615858368580409e+02, -1.556989798598866e+02, 6.680131188771972e+01,
-                          -1.328068155288572e+01};
+  constexpr double b[] = {-5.447609879822406e+01, 1.615858368580409e+02, -1.556989798598866e+02,
+                          6.680131188771972e+01, -1.328068155288572e+01};
   constexpr double c[] = {-7.784894002430293e-03, -3.223964580411365e-01, -2.400758277161838e+00,
                           -2.549732539343734e+00, 4.374664141464968e+00,  2.938163982698783e+00};
   constexpr double d[] = {7.784695709041462e-03, 3.224671290700398e-01, 2.445134137142996e+00, 3.754408661907416e+00};

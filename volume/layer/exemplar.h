@@ -14,7 +14,8 @@ enum class Semantic : std::uint8_t {
   color,     ///< three components, linear Rec.709 once decoded
   scalar,    ///< any number of independent components: roughness, alpha, extinction (1/mm) ...
   height,    ///< one component, mm; drives min/max selection and displacement
-  direction, ///< three components: a tangent vector in texture space (fibres); carried to rest space by the inverse Jacobian
+  direction, ///< three components: a tangent vector in texture space (fibres); carried to rest space by the inverse
+             ///< Jacobian
   normal     ///< three components: a normal in texture space; carried by the Jacobian's transpose
 };
 
@@ -31,14 +32,15 @@ struct Channel {
 
 inline constexpr int max_components = 12; ///< of all channels of an exemplar or model together
 
-/// Texels are 8 bit, the first axis fastest, channels interleaved; texel i of an axis of n has its centre at (i + ½)/n.
+/// Texels are 8 bit, the first axis fastest, channels interleaved; texel i of an axis of n has its centre at (i +
+/// ½)/n.
 struct Exemplar {
   std::string name;
-  int axes = 3;                                         ///< 2, 3 or 4
-  std::array<int, 4> size{1, 1, 1, 1};                  ///< texels along each axis; 1 beyond `axes`
+  int axes = 3;                        ///< 2, 3 or 4
+  std::array<int, 4> size{1, 1, 1, 1}; ///< texels along each axis; 1 beyond `axes`
   std::array<Wrap, 4> wrap{Wrap::clamp, Wrap::clamp, Wrap::clamp, Wrap::clamp};
   std::vector<Channel> channel;
-  std::vector<std::uint8_t> texel;                      ///< texel_count() · component_count()
+  std::vector<std::uint8_t> texel; ///< texel_count() · component_count()
 
   /// Optional, for Blend::Mix::histogram: the same texels made Gaussian (byte b stands for (b/255 − ½) · 6 standard
   /// deviations) and, per component, the 256 decoded values that a Gaussian byte maps back to (Heitz, Neyret 2018).

@@ -39,8 +39,8 @@ struct AxisMap {
   std::array<float, 4> offset{0, 0, 0, 0};
 };
 
-/// One pasted piece of an exemplar. Coordinates of its look-ups live in the patch's unit cube, where the mask is read;
-/// `frame` carries them to the exemplar, so that patches may show different parts of it under the same mask.
+/// One pasted piece of an exemplar. Coordinates of its look-ups live in the patch's unit cube, where the mask is
+/// read; `frame` carries them to the exemplar, so that patches may show different parts of it under the same mask.
 struct Patch {
   static constexpr std::uint32_t no_mask = 0xffffffffu;
   std::uint32_t exemplar = 0;
@@ -49,7 +49,8 @@ struct Patch {
   std::uint64_t key = 0; ///< identifies the paste across edits (a hash of the seed's rest position, say)
 };
 
-/// One affine map on one simplex: rows of the layer's corner table, one per corner of the simplex (a facet uses three).
+/// One affine map on one simplex: rows of the layer's corner table, one per corner of the simplex (a facet uses
+/// three).
 struct Lookup {
   std::uint32_t patch = 0;
   std::array<std::uint32_t, 4> corner{};
@@ -60,16 +61,17 @@ inline constexpr int max_weighted_lookups = 16; ///< beyond it the smallest are 
 struct Layer {
   std::string name;
   Domain domain = Domain::solid;
-  std::int32_t region = -1;        ///< the region it belongs to; −1: all
-  int width = 3;                   ///< coordinates per corner: 2, 3 or 4; equals the axes of its exemplars
+  std::int32_t region = -1; ///< the region it belongs to; −1: all
+  int width = 3;            ///< coordinates per corner: 2, 3 or 4; equals the axes of its exemplars
   Blend blend;
-  std::vector<Exemplar> exemplar;  ///< all with the same channels
+  std::vector<Exemplar> exemplar; ///< all with the same channels
   std::vector<Mask> mask;
   std::vector<Patch> patch;
-  /// Rows of width + 1 numbers: coordinates in the patch's unit cube, then the weight in [0, 1] that multiplies the mask.
+  /// Rows of width + 1 numbers: coordinates in the patch's unit cube, then the weight in [0, 1] that multiplies the
+  /// mask.
   std::vector<float> corner;
-  /// Exemplar coordinates are evaluation(frame(w)); the mask is read at w itself. Animates m, or moves a layer's material,
-  /// without rebuilding it.
+  /// Exemplar coordinates are evaluation(frame(w)); the mask is read at w itself. Animates m, or moves a layer's
+  /// material, without rebuilding it.
   AxisMap evaluation;
   /// Compressed rows: the look-ups of simplex i are lookup[begin[i]] … lookup[begin[i + 1] − 1], in paste order. When
   /// `simplex` is not empty the layer is sparse: row i belongs to simplex[i] (ascending).

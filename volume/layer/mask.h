@@ -5,7 +5,8 @@
 namespace pith {
 
 /// 8-bit alpha over the unit square or cube of a patch, first axis fastest, centres as in Exemplar. Interpolated
-/// linearly; 0 outside [0, 1] along every axis that is not `open`. Along an open axis it is extended by its border value.
+/// linearly; 0 outside [0, 1] along every axis that is not `open`. Along an open axis it is extended by its border
+/// value.
 struct Mask {
   int axes = 3;
   std::array<int, 3> size{1, 1, 1};
@@ -13,7 +14,44 @@ struct Mask {
   std::vector<std::uint8_t> alpha;
 
   /// Alpha in [0, 1] at a position; reads `axes` numbers.
-  float value(const float* position) const;
+  float value(const float* position) const {
+    std::array<int, 3> low{}, step{};
+    std::array<float, 3> fraction{};
+    int stride = 1;
+    for (int axis = 0; axis < axes; ++axis) {
+      const float p = position[axis];
+      if (!open[axis] && !(p >= 0 && p <= 1)) return 0;
+      const float last = static_cast<float>(size[axis] - 1), at = p * size[axis] - 0.5f;
+      const float inside = at > 0 ? (at < last ? at : last) : 0;
+      const int i = static_cast<int>(inside);
+      low[axis] = i * stride;
+      step[axis] = i + 1 < size[axis] ? stride : 0;
+      fraction[axis] = inside - i;
+      stride *= size[axis];
+    }
+    const std::uint8_t* cell = alpha.data() + low[0] + low[1] + low[2];
+    const auto row = [&](const std::uint8_t* a) { return a[0] + fraction[0] * (a[step[0]] - a[0]); };
+    const auto slice = [&](const std::uint8_t* a) {
+      const float first = row(a);
+      return first + fraction[1] * (row(a + step[1]) - first);
+    };
+    const float first = slice(cell);
+    const float value = axes == 3 ? first + fraction[2] * (slice(cell + step[2]) - first) : first;
+    return value * (1 / 255.0f);
+  }
+
+  /// True when the texel that holds the position is not 0: cheaper than value().
+  bool touches(const double* position) const {
+    std::size_t index = 0, stride = 1;
+    for (int axis = 0; axis < axes; ++axis) {
+      const double p = position[axis];
+      if (!open[axis] && !(p >= 0 && p <= 1)) return false;
+      const double at = p * size[axis];
+      index += stride * (at > 0 ? (at < size[axis] - 1 ? static_cast<std::size_t>(at) : size[axis] - 1) : 0);
+      stride *= size[axis];
+    }
+    return alpha[index] != 0;
+  }
 };
 
 /// The three splotch masks of depth-varying textures (Takayama 2008, §5.2.7, Fig. 14) share one shape.
@@ -21,17 +59,23 @@ enum class SplotchPart { whole, outer, middle, inner };
 
 struct SplotchOptions {
   int axes = 3;
-  int resolution = 32;           ///< texels along each axis
-  double radius = 0.42;          ///< of the splotch across the axis of variation, in texture widths
-  double radius_along = 0.30;    ///< half its extent along the axis of variation (outer, middle, inner only)
-  double drop_off = 0.08;        ///< width of the alpha ramp, in texture widths (paper: 0.05–0.10)
-  double irregularity = 0.06;    ///< amplitude of the border's waviness, in texture widths
-  int variation_axis = 1;        ///< the axis along which outer/middle/inner differ (depth)
+  int resolution = 40;        ///< texels along each axis
+  double radius = 0.45;       ///< of the splotch across the axis of variation, in texture widths
+  double radius_outer = 0.7;  ///< the same for the outer part, whose layers bend least
+  double radius_along = 0.42; ///< half its extent along the axis of variation (middle only)
+  double radius_end = 0.36;   ///< the same for outer and inner, measured from their end
+  double drop_off = 0.09;     ///< width of the alpha ramp, in texture widths (paper: 0.05–0.10)
+  double irregularity = 0.06; ///< amplitude of the border's waviness, in texture widths
+  int variation_axis = 1;     ///< the axis along which outer/middle/inner differ (depth)
   std::uint64_t seed = 1;
 };
 
-/// A splotch: an irregular ellipsoid, opaque inside, falling to 0 over the drop-off. `outer` sits at the low end of the
-/// variation axis and is open (opaque) beyond it, `inner` at the high end, `middle` between (§5.2.1, Fig. 11).
+/// Texture widths that the mask's unit square or cube spans along the axes across the variation: room for the splotch
+/// and its waviness. More than 1 where the splotch is larger than the exemplar, which then repeats under it.
+double splotch_extent(const SplotchOptions& options, SplotchPart part);
+
+/// A splotch: an irregular ellipsoid, opaque inside, falling to 0 over the drop-off. `outer` sits at the low end of
+/// the variation axis and is open (opaque) beyond it, `inner` at the high end, `middle` between (§5.2.1, Fig. 11).
 Mask splotch_mask(const SplotchOptions& options, SplotchPart part = SplotchPart::whole);
 
 } // namespace pith

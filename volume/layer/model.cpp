@@ -22,8 +22,9 @@ void validate(const Model& model) {
   for (TetId t : b.tet)
     if (t >= tets) refuse("has a boundary facet of a tet that does not exist");
   const Fields& f = model.field;
-  if ((!f.depth.empty() && f.depth.size() != model.mesh.vertex_count()) || (!f.axes.empty() && f.axes.size() != tets) ||
-      (!f.scale.empty() && f.scale.size() != tets) || (!f.singular.empty() && f.singular.size() != tets))
+  if ((!f.depth.empty() && f.depth.size() != model.mesh.vertex_count()) ||
+      (!f.axes.empty() && f.axes.size() != tets) || (!f.scale.empty() && f.scale.size() != tets) ||
+      (!f.singular.empty() && f.singular.size() != tets))
     refuse("has fields that do not fit its mesh");
   for (const Layer& layer : model.layer) validate(layer, layer.domain == Domain::solid ? tets : facets);
 }
@@ -67,8 +68,9 @@ Root::Tables::Tables(Model given, const RootOptions& options)
   for (const Layer& l : model.layer) {
     LayerEntry entry{LayerReader(l, options.mips), {}};
     for (const Channel& c : l.exemplar.front().channel) {
-      const std::size_t at = std::find_if(channels.begin(), channels.end(), [&](auto& k) { return k.name == c.name; }) -
-                             channels.begin();
+      const std::size_t at =
+          std::find_if(channels.begin(), channels.end(), [&](auto& k) { return k.name == c.name; }) -
+          channels.begin();
       for (int k = 0; k < c.components; ++k) entry.component.push_back(first[at] + k);
     }
     layers.push_back(std::move(entry));

@@ -10,18 +10,18 @@ namespace pith {
 
 /// What was computed on the root before the layers; kept for tools that show or reuse it. Any may be empty.
 struct Fields {
-  PerVertex<float> depth;   ///< 0 at the outermost, 1 at the innermost part of each region
-  PerTet<Mat3d> axes;       ///< columns: the unit axes R, S, T of the texture (S along depth)
-  PerTet<float> scale;      ///< mm per texture width
+  PerVertex<float> depth;        ///< 0 at the outermost, 1 at the innermost part of each region
+  PerTet<Mat3d> axes;            ///< columns: the unit axes R, S, T of the texture (S along depth)
+  PerTet<float> scale;           ///< mm per texture width
   PerTet<std::uint8_t> singular; ///< 1 where the frame is not determined
 };
 
 struct Model {
   std::string name;
-  TetMesh mesh;               ///< the root: fixed once filling starts
+  TetMesh mesh; ///< the root: fixed once filling starts
   Boundary boundary;
   Fields field;
-  std::vector<Layer> layer;   ///< bottom first
+  std::vector<Layer> layer; ///< bottom first
 };
 
 /// Throws InvalidInput when anything does not fit together.
@@ -31,16 +31,16 @@ void validate(const Model& model);
 struct MaterialPoint {
   Vec3d position = Vec3d::Zero(); ///< in rest space, mm
   std::int32_t region = -1;       ///< the side: which region, for points on an interface; −1: any
-  FacetId facet;                  ///< on the skin: the root facet, so that skin layers count; none inside or on a section
-  TetId hint;                     ///< a root tet near the point: speed only
+  FacetId facet; ///< on the skin: the root facet, so that skin layers count; none inside or on a section
+  TetId hint;    ///< a root tet near the point: speed only
 };
 
 /// What is there.
 struct Material {
   std::array<float, max_components> value{}; ///< decoded, in the order of Root::channels(); directions in rest space
-  float coverage = 0;                        ///< accumulated alpha of the masked look-ups, 1 where nothing shines through
-  std::uint16_t lookups_read = 0;            ///< exemplar reads that it took
-  TetId tet;                                 ///< the owner
+  float coverage = 0;             ///< accumulated alpha of the masked look-ups, 1 where nothing shines through
+  std::uint16_t lookups_read = 0; ///< exemplar reads that it took
+  TetId tet;                      ///< the owner
 };
 
 struct RootOptions {

@@ -41,8 +41,10 @@ struct Span {
 inline int wrapped(int i, int n, Wrap wrap) {
   if (static_cast<unsigned>(i) < static_cast<unsigned>(n)) return i;
   switch (wrap) {
-  case Wrap::clamp: return i < 0 ? 0 : n - 1;
-  case Wrap::repeat: return (i %= n) < 0 ? i + n : i;
+  case Wrap::clamp:
+    return i < 0 ? 0 : n - 1;
+  case Wrap::repeat:
+    return (i %= n) < 0 ? i + n : i;
   case Wrap::mirror: {
     const int period = 2 * n;
     if ((i %= period) < 0) i += period;

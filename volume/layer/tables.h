@@ -13,7 +13,7 @@ struct Root::Tables {
     std::vector<int> component; ///< of the root, for each component of the layer
   };
   Model model;
-  Locator locator;              ///< refers to model
+  Locator locator; ///< refers to model
   std::vector<Channel> channels;
   int components = 0;
   std::vector<LayerEntry> layers; ///< refer to model

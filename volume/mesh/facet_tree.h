@@ -8,8 +8,8 @@ namespace pith {
 
 struct NearestFacet {
   std::uint32_t facet = std::numeric_limits<std::uint32_t>::max();
-  Vec3d point = Vec3d::Zero();                 ///< the closest point on it
-  std::array<double, 3> barycentric{};         ///< of that point
+  Vec3d point = Vec3d::Zero();         ///< the closest point on it
+  std::array<double, 3> barycentric{}; ///< of that point
   double squared_distance = std::numeric_limits<double>::infinity();
 };
 

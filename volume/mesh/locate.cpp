@@ -16,7 +16,8 @@ std::vector<std::array<Vec3d, 3>> facets_of(const TetMesh& mesh, const Boundary&
   return triangles;
 }
 
-/// Signs of x against the four facets of a tet: +1 inside, 0 on the facet's plane, −1 outside. `inside`: none negative.
+/// Signs of x against the four facets of a tet: +1 inside, 0 on the facet's plane, −1 outside. `inside`: none
+/// negative.
 bool facet_signs(const TetMesh& mesh, TetId tet, const Vec3d& x, std::array<int, 4>& sign) {
   const auto& corner = mesh.corner[tet];
   bool inside = true;
@@ -31,16 +32,38 @@ bool facet_signs(const TetMesh& mesh, TetId tet, const Vec3d& x, std::array<int,
 
 double determinant(const Vec3d& u, const Vec3d& v, const Vec3d& w) { return u.dot(v.cross(w)); }
 
-} // namespace
+/// Six times the volumes of the four tets that x makes with the facets, and a bound below which rounding may have
+/// changed a sign: the determinants' errors are below 2e-15 of the cube of the largest coordinate difference.
+struct Volumes {
+  std::array<double, 4> w;
+  double uncertain;
+};
 
-std::array<double, 4> barycentric(const TetMesh& mesh, TetId tet, const Vec3d& x) {
+inline Volumes volumes_of(const TetMesh& mesh, TetId tet, const Vec3d& x) {
   const auto& c = mesh.corner[tet];
   const Vec3d a = mesh.position[c[0]] - x, b = mesh.position[c[1]] - x;
   const Vec3d d = mesh.position[c[2]] - x, e = mesh.position[c[3]] - x;
-  const double w0 = determinant(b, d, e), w1 = -determinant(a, d, e);
-  const double w2 = determinant(a, b, e), w3 = -determinant(a, b, d);
-  const double sum = (w0 + w1) + (w2 + w3);
-  return {w0 / sum, w1 / sum, w2 / sum, w3 / sum};
+  const double reach = a.cwiseAbs().cwiseMax(b.cwiseAbs()).cwiseMax(d.cwiseAbs().cwiseMax(e.cwiseAbs())).maxCoeff();
+  return {{determinant(b, d, e), -determinant(a, d, e), determinant(a, b, e), -determinant(a, b, d)},
+          1e-14 * reach * reach * reach};
+}
+
+inline std::array<double, 4> normalized(const std::array<double, 4>& w) {
+  const double sum = (w[0] + w[1]) + (w[2] + w[3]);
+  return {w[0] / sum, w[1] / sum, w[2] / sum, w[3] / sum};
+}
+
+/// Into [0, 1], summing to 1.
+inline void clamp_to_simplex(std::array<double, 4>& b) {
+  double sum = 0;
+  for (double& value : b) sum += (value = std::clamp(value, 0.0, 1.0));
+  for (double& value : b) value /= sum;
+}
+
+} // namespace
+
+std::array<double, 4> barycentric(const TetMesh& mesh, TetId tet, const Vec3d& x) {
+  return normalized(volumes_of(mesh, tet, x).w);
 }
 
 Locator::Locator(const TetMesh& mesh, const Boundary& boundary)
@@ -103,7 +126,8 @@ TetId Locator::walk(const Vec3d& x, TetId from, std::array<int, 4>& sign) const 
         sign[i] = 1; // came through it: exactly the opposite of its sign from behind
         continue;
       }
-      sign[i] = -orientation(mesh_.position[corner[f[0]]], mesh_.position[corner[f[1]]], mesh_.position[corner[f[2]]], x);
+      sign[i] =
+          -orientation(mesh_.position[corner[f[0]]], mesh_.position[corner[f[1]]], mesh_.position[corner[f[2]]], x);
       if (sign[i] < 0) {
         inside = false;
         next = across;
@@ -118,8 +142,8 @@ TetId Locator::walk(const Vec3d& x, TetId from, std::array<int, 4>& sign) const 
   return {};
 }
 
-// Among all closed tets of the region that contain x the lowest. x lies strictly inside `found`, or on a facet (one zero
-// sign), an edge (two) or a corner (three) of it; then the candidates are the tets around that simplex.
+// Among all closed tets of the region that contain x the lowest. x lies strictly inside `found`, or on a facet (one
+// zero sign), an edge (two) or a corner (three) of it; then the candidates are the tets around that simplex.
 TetId Locator::lowest_owner(const Vec3d& x, std::int32_t region, TetId found, const std::array<int, 4>& sign) const {
   const int zeros = std::count(sign.begin(), sign.end(), 0);
   const auto fits = [&](TetId t) { return region < 0 || mesh_.region[t] == region; };
@@ -174,6 +198,15 @@ bool Locator::contains(const Vec3d& x, std::int32_t region) const { return owner
 
 Location Locator::locate(const Vec3d& x, std::int32_t region, TetId hint) const {
   Location location;
+  // Most hints are right: x is certainly strictly inside, and then no other tet can own it.
+  if (hint < mesh_.tet_count() && (region < 0 || mesh_.region[hint] == region)) {
+    const Volumes v = volumes_of(mesh_, hint, x);
+    if (std::min({v.w[0], v.w[1], v.w[2], v.w[3]}) > v.uncertain) {
+      location = {hint, normalized(v.w), true};
+      clamp_to_simplex(location.barycentric);
+      return location;
+    }
+  }
   location.tet = owner(x, region, hint);
   location.inside = location.tet.exists();
   if (location.inside) {
@@ -186,9 +219,7 @@ Location Locator::locate(const Vec3d& x, std::int32_t region, TetId hint) const 
     const int opposite = boundary_.opposite[facet];
     for (int i = 0; i < 3; ++i) location.barycentric[facet_corners[opposite][i]] = nearest.barycentric[i];
   }
-  double sum = 0;
-  for (double& b : location.barycentric) sum += (b = std::clamp(b, 0.0, 1.0));
-  for (double& b : location.barycentric) b /= sum;
+  clamp_to_simplex(location.barycentric);
   return location;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// Which tet owns a point. The answer is a function of the point and the region alone: hints buy speed, never change it.
+// Which tet owns a point. The answer is a function of the point and the region alone: hints buy speed, never change
+// it.
 #include "volume/mesh/boundary.h"
 #include "volume/mesh/facet_tree.h"
 #include "volume/mesh/tet_mesh.h"
@@ -14,9 +15,9 @@ struct Location {
   bool inside = false; ///< in the closed tet; false: the nearest tet of the region was taken
 };
 
-/// The owner of x in a region: the lowest-numbered closed tet that contains x (exact orientation tests). A point in no
-/// tet of the region goes to the tet behind the nearest boundary facet of that region (lowest id among equals), with the
-/// point projected onto that facet. Needs the mesh and boundary to outlive it.
+/// The owner of x in a region: the lowest-numbered closed tet that contains x (exact orientation tests). A point in
+/// no tet of the region goes to the tet behind the nearest boundary facet of that region (lowest id among equals),
+/// with the point projected onto that facet. Needs the mesh and boundary to outlive it.
 class Locator {
 public:
   Locator(const TetMesh& mesh, const Boundary& boundary);

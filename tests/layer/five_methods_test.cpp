@@ -1,0 +1,264 @@
+// The proof that one layer carries all five methods: layers in the shape of each, colours in closed form.
+#include "tests/layer/five_models.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace pith {
+namespace {
+
+using namespace testing;
+
+Material inside(const Root& root, const Vec3d& x) { return material_at(root, {x, -1, {}, {}}); }
+
+/// A random point of a boundary facet, and its barycentrics.
+std::pair<Vec3d, std::array<double, 3>> facet_point(const Model& model, FacetId f, Random& random) {
+  std::array<double, 3> b{random.uniform(), random.uniform(), 0};
+  if (b[0] + b[1] > 1) b = {1 - b[0], 1 - b[1], 0};
+  b[2] = 1 - b[0] - b[1];
+  Vec3d x = Vec3d::Zero();
+  for (int i = 0; i < 3; ++i) x += b[i] * model.mesh.position[model.boundary.corner[f][i]];
+  return {x, b};
+}
+
+// Takayama 2008: many masked volumes over one another.
+TEST(FiveMethods, ManyMaskedVolumesOverOneAnother) {
+  const Root root(masked_volumes());
+  for (const Vec3d& x : random_points(size, 2000, 1)) {
+    const Vec3d u = x / size;
+    const double ramp = std::clamp(15 * (18 * u.y() - 0.5), 0.0, 255.0) / 255;
+    const double red = 51 / 255.0, blue = std::clamp((4 * u.x() - 0.5) / 3, 0.0, 1.0);
+    const std::array<double, 3> expected{(1 - blue) * (red * 1 + (1 - red) * ramp), (1 - blue) * (1 - red) * ramp,
+                                         blue + (1 - blue) * (1 - red) * ramp};
+    const Material m = inside(root, x);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(m.value[c], expected[c], 2e-3) << x.transpose();
+    EXPECT_NEAR(m.coverage, 1, 2e-3);
+  }
+}
+
+TEST(FiveMethods, TheOrderOfPastesMatters) {
+  for (int top : {0, 1}) {
+    Model model = cube_model(1, size);
+    Layer layer = solid_layer(model, size, 2);
+    layer.exemplar = {constant("red", 3, {255, 0, 0}), constant("blue", 3, {0, 0, 255})};
+    layer.mask = {full_mask(3, 255)};
+    layer.patch[0] = {static_cast<std::uint32_t>(1 - top), 0, {}, 0};
+    layer.patch[1] = {static_cast<std::uint32_t>(top), 0, {}, 0};
+    model.layer.push_back(layer);
+    const Root root(std::move(model));
+    const Material m = inside(root, {0.3, 0.4, 0.5});
+    EXPECT_EQ(m.value[0], top == 0 ? 1 : 0);
+    EXPECT_EQ(m.value[2], top == 1 ? 1 : 0);
+    EXPECT_EQ(m.lookups_read, 1); // nothing below an opaque one is read
+  }
+}
+
+TEST(FiveMethods, CornerWeightsFadeAMaskAndCoverageSaysSo) {
+  Model model = cube_model(1, size);
+  Layer layer;
+  layer.patch = {{0, 0, {}, 0}};
+  layer.exemplar = {constant("green", 3, {0, 255, 0})};
+  layer.mask = {full_mask(3, 204)};
+  LayerWriter writer(layer);
+  for (TetId t : all_ids<TetId>(model.mesh.tet_count())) {
+    std::vector<std::vector<float>> rows;
+    for (VertexId v : model.mesh.corner[t])
+      rows.push_back({0.5f, 0.5f, 0.5f, float(model.mesh.position[v].z() / size)});
+    writer.add(0, rows);
+    writer.end_simplex();
+  }
+  model.layer.push_back(layer);
+  const Root root(std::move(model));
+  for (const Vec3d& x : random_points(size, 500, 2)) {
+    const Material m = inside(root, x);
+    EXPECT_NEAR(m.coverage, 0.8 * x.z() / size, 1e-5);
+    EXPECT_NEAR(m.value[1], 1, 1e-5); // what there is, is green: never darkened by what is missing
+  }
+}
+
+// Praun 2000: masked images on the boundary, over a solid.
+TEST(FiveMethods, MaskedImagesOnTheSkin) {
+  const Root root(masked_images());
+  Random random(3);
+  for (FacetId f : all_ids<FacetId>(root.model().boundary.facet_count()))
+    for (int k = 0; k < 20; ++k) {
+      const Vec3d x = facet_point(root.model(), f, random).first;
+      const double blue = std::clamp((6 * x.x() / size - 0.5) / 5, 0.0, 1.0), red = 0.4;
+      const Material on = material_at(root, {x, -1, f, {}});
+      EXPECT_NEAR(on.value[0], (1 - blue) * (red + 0.6), 1e-3);
+      EXPECT_NEAR(on.value[1], (1 - blue) * 0.6, 1e-3);
+      EXPECT_NEAR(on.value[2], blue + (1 - blue) * 0.6, 1e-3);
+      const Material below = material_at(root, {x, -1, {}, {}}); // the same place seen from inside
+      EXPECT_FLOAT_EQ(below.value[1], 1);
+    }
+}
+
+// Ray 2009: one look-up into a periodic (s, t, m) tile; three on triangles around a singular vertex; m is animated.
+TEST(FiveMethods, PeriodicTileWithThreeLookUpsAndAnimatedM) {
+  const auto wave = [](double s) { // linear interpolation of 0, 60, 120, 180 with period 1
+    const double at = 4 * s - 0.5, low = std::floor(at), fraction = at - low;
+    const auto value = [](double i) { return 60 * (i - 4 * std::floor(i / 4)); };
+    return ((1 - fraction) * value(low) + fraction * value(low + 1)) / 255;
+  };
+  for (double shift_m : {0.0, 0.2, -0.1}) {
+    const Root root(periodic_tile(static_cast<float>(shift_m)));
+    Random random(4);
+    for (FacetId f : all_ids<FacetId>(root.model().boundary.facet_count()))
+      for (int k = 0; k < 10; ++k) {
+        const Vec3d x = facet_point(root.model(), f, random).first;
+        const Material m = material_at(root, {x, -1, f, {}});
+        const double expected_m = 0.25 + 0.5 * x.z() / size + shift_m;
+        EXPECT_NEAR(m.value[0], std::clamp(15 * (18 * expected_m - 0.5), 0.0, 255.0) / 255, 1e-3);
+        EXPECT_NEAR(m.value[1], wave(x.x() / size), 1e-3);
+        EXPECT_NEAR(m.value[2], wave(x.y() / size), 1e-3);
+        EXPECT_NEAR(m.coverage, 1, 1e-5);
+        EXPECT_EQ(m.lookups_read, f % 2 == 0 ? 1 : 3);
+      }
+  }
+}
+
+// Ying 2001: texture maps with gutters. Two charts of one atlas; a facet's border texels are repeated in the gutter,
+// so both sides of a chart border show the same colour.
+TEST(FiveMethods, TextureMapsWithGuttersMeetWithoutASeam) {
+  const Root root(gutter_atlas());
+  Random random(5);
+  for (FacetId f : all_ids<FacetId>(root.model().boundary.facet_count())) {
+    const auto& c = root.model().boundary.corner[f];
+    for (int k = 0; k < 10; ++k) { // points on edges belong to two facets, here mostly of different cells
+      const double t = random.uniform();
+      const Vec3d x = (1 - t) * root.model().mesh.position[c[k % 3]] + t * root.model().mesh.position[c[(k + 1) % 3]];
+      EXPECT_NEAR(material_at(root, {x, -1, f, {}}).value[0], pattern(x.x() / size, x.y() / size) / 255, 1e-4);
+    }
+  }
+}
+
+TEST(FiveMethods, PatchesSelectByHeightWithGrace) {
+  const auto flat = [](const char* name, int red, int height, int roughness) {
+    return exemplar_of(name, 2, {1, 1, 1}, Wrap::repeat, pbr(), [=](int, int, int) {
+      return std::vector<int>{red, 0, 255 - red, height, roughness};
+    });
+  };
+  for (auto select : {Blend::Select::max, Blend::Select::min}) {
+    Exemplar a = flat("a", 255, 204, 255), b = flat("b", 0, 102, 0);
+    const Root root(two_patches({select, 0.2f, Blend::Mix::linear}, a, b));
+    Random random(6);
+    for (FacetId f : all_ids<FacetId>(root.model().boundary.facet_count()))
+      for (int k = 0; k < 10; ++k) {
+        const Vec3d x = facet_point(root.model(), f, random).first;
+        const double w = x.x() / size;
+        const double first = (1 - w) * (select == Blend::Select::max ? 0.8 : 0.2);
+        const double second = w * (select == Blend::Select::max ? 0.4 : 0.6);
+        const double floor = std::max(0.0, std::max(first, second) - 0.2);
+        const double wa = std::max(0.0, first - floor), wb = std::max(0.0, second - floor);
+        const Material m = material_at(root, {x, -1, f, {}});
+        EXPECT_NEAR(m.value[0], wa / (wa + wb), 2e-5);
+        EXPECT_NEAR(m.value[root.component_of("roughness")], wa / (wa + wb), 2e-5);
+        EXPECT_FLOAT_EQ(m.coverage, 1);
+      }
+  }
+}
+
+TEST(FiveMethods, HistogramMixingKeepsMeanAndVariance) {
+  double variance[2] = {}, mean[2] = {};
+  for (bool histogram : {false, true}) {
+    Exemplar a = skewed_noise(1), b = skewed_noise(2);
+    b.inverse = a.inverse;
+    const Root root(
+        two_patches({Blend::Select::none, 0.1f, histogram ? Blend::Mix::histogram : Blend::Mix::linear}, a, b));
+    const Boundary& boundary = root.model().boundary;
+    double sum = 0, squares = 0;
+    int count = 0;
+    // Around the line x = ½ both weights are ½.
+    for (FacetId f : all_ids<FacetId>(boundary.facet_count())) {
+      Box box;
+      for (VertexId v : boundary.corner[f]) box.add(root.model().mesh.position[v]);
+      if (box.extent().x() == 0 || box.low.x() > size / 2 || box.high.x() < size / 2) continue;
+      for (int k = 0; k < 4000; ++k) {
+        Random random(9, f, k);
+        const Vec3d x = facet_point(root.model(), f, random).first;
+        if (std::abs(x.x() - size / 2) > 0.1) continue;
+        const float value = material_at(root, {x, -1, f, {}}).value[0];
+        sum += value;
+        squares += value * value;
+        ++count;
+      }
+    }
+    ASSERT_GT(count, 1000);
+    mean[histogram] = sum / count;
+    variance[histogram] = squares / count - mean[histogram] * mean[histogram];
+  }
+  // Independent noises: the linear mean halves the variance, histogram mixing keeps it.
+  EXPECT_GT(variance[1] / variance[0], 1.6);
+  EXPECT_LT(variance[1] / variance[0], 2.4);
+  EXPECT_NEAR(mean[1], mean[0], 0.03);
+}
+
+TEST(FiveMethods, MoreWeightedLookUpsThanTheLimitDropTheSmallest) {
+  Model model = cube_model(1, size);
+  Layer layer;
+  layer.blend.mix = Blend::Mix::linear;
+  layer.exemplar = {constant("white", 3, {255, 255, 255}), constant("black", 3, {0, 0, 0})};
+  layer.patch = {{0, Patch::no_mask, {}, 0}, {1, Patch::no_mask, {}, 0}};
+  LayerWriter writer(layer);
+  for (TetId t : all_ids<TetId>(model.mesh.tet_count())) {
+    (void)t;
+    for (int i = 0; i < max_weighted_lookups + 8; ++i) {
+      const bool small = i % 3 == 0; // exactly a third are small and black: they are the ones to go
+      const std::vector<float> row{0.5f, 0.5f, 0.5f, small ? 0.01f : 1.0f};
+      writer.add(small ? 1 : 0, {row, row, row, row});
+    }
+    writer.end_simplex();
+  }
+  model.layer.push_back(layer);
+  const Root root(std::move(model));
+  const Material m = inside(root, {0.5, 0.6, 0.7});
+  EXPECT_FLOAT_EQ(m.value[0], 1);
+  EXPECT_EQ(m.lookups_read, max_weighted_lookups);
+}
+
+TEST(Directions, AreCarriedToRestSpaceThroughTheLookUp) {
+  // Texture coordinates are turned by 90° about z and stretched: the fibre (texture x) must run along rest y.
+  Model model = cube_model(2, size);
+  Layer layer;
+  layer.exemplar = {
+      exemplar_of("fibre", 3, {1, 1, 1}, Wrap::clamp,
+                  {{"color", Semantic::color, 3, false, 0, 1}, {"fibre", Semantic::direction, 3, false, -1, 1}},
+                  [](int, int, int) { return std::vector<int>{255, 255, 255, 255, 128, 128}; })};
+  layer.patch = {{}};
+  LayerWriter writer(layer);
+  for (TetId t : all_ids<TetId>(model.mesh.tet_count())) {
+    std::vector<std::vector<float>> rows;
+    for (VertexId v : model.mesh.corner[t]) {
+      const Vec3d x = model.mesh.position[v];
+      rows.push_back({float(0.3 * x.y()), float(-0.1 * x.x()), float(0.2 * x.z()), 1.0f});
+    }
+    writer.add(0, rows);
+    writer.end_simplex();
+  }
+  model.layer.push_back(layer);
+  const Root root(std::move(model));
+  const int fibre = root.component_of("fibre");
+  ASSERT_EQ(fibre, 3);
+  const Material m = inside(root, {0.4, 0.5, 0.6});
+  EXPECT_NEAR(m.value[fibre + 1], 1, 0.05);
+  EXPECT_NEAR(m.value[fibre], 0, 0.05);
+  EXPECT_NEAR(m.value[fibre + 2], 0, 0.05);
+}
+
+TEST(Footprint, FiltersTowardsTheMeanAndZeroIsThePointItself) {
+  Model model = cube_model(1, size);
+  Layer layer = solid_layer(model, size, 1);
+  layer.exemplar = {exemplar_of("checker", 3, {32, 32, 32}, Wrap::repeat, linear_color(),
+                                [](int x, int y, int z) { return std::vector<int>(3, (x + y + z) % 2 ? 255 : 0); })};
+  layer.patch[0] = {0, Patch::no_mask, {}, 0};
+  model.layer.push_back(layer);
+  const Root root(std::move(model));
+  const Vec3d x = Vec3d(3.5, 4.5, 7.5) / 32 * size; // a texel's centre
+  EXPECT_FLOAT_EQ(inside(root, x).value[0], material_at(root, {x, -1, {}, {}}, 0).value[0]);
+  EXPECT_NEAR(inside(root, x).value[0], 0, 1e-4);
+  EXPECT_NEAR(material_at(root, {x, -1, {}, {}}, 0.2).value[0], 0.5, 0.02);
+}
+
+} // namespace
+} // namespace pith
