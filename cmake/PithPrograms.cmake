@@ -14,8 +14,8 @@ foreach(module image:pith-images vdb:pith-vdb)
   list(GET module 0 folder)
   list(GET module 1 target)
   add_library(${target} MODULE volume/io/${folder}_module/${folder}_module.cpp)
-  set_target_properties(${target} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}
-    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  # Symbols stay visible: hidden copies of OpenVDB's templates would mix with those of its library.
+  set_target_properties(${target} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
 endforeach()
 target_link_libraries(pith-images PRIVATE pith_options PkgConfig::OpenImageIO)
 target_link_libraries(pith-vdb PRIVATE pith_options OpenVDB::openvdb)
