@@ -127,7 +127,9 @@ build() {
 
 demo() {
   [[ $# -eq 0 ]] || fail "demo takes no options" 2
-  build
+  deps
+  configured release
+  built release pith
   local pith=build/release/pith out=build/demo
   mkdir -p "$out"
   step "making the kiwi"

@@ -78,13 +78,13 @@ int main(int count, char** arguments) {
     return 0;
   }
 
-  nlohmann::json all = nlohmann::json::array();
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
   int failures = 0;
   print_line({"name", "value", "unit", "target", "peer", "note"});
   for (const Row& row : rows) {
     try {
       const Measured measured = row.run(settings);
-      nlohmann::json entry = {
+      nlohmann::ordered_json entry = {
           {"name", row.name}, {"value", measured.value}, {"unit", row.unit}, {"target", row.target}};
       std::string peer;
       if (measured.peer_value) {
