@@ -51,10 +51,12 @@ ColoredSurface colored_surface(const Root& root, const Pieces& pieces, const Sur
 void write_surface(const std::filesystem::path& path, const ColoredSurface& surface,
                    const std::string& name = "pith");
 
-/// Binary little-endian; x y z float32, nx ny nz, red green blue (8 bit, sRGB), and the piece of each face. Points
-/// are shared where their colours agree, so that a piece without a skin layer of its own is watertight by index.
+/// Binary little-endian; x y z float32, nx ny nz, red green blue (8 bit, sRGB). Points are shared where their colours
+/// agree, so that a model without skin layers is watertight by index. (Readers in wide use stumble over properties of
+/// faces, so there are none.)
 void write_ply(const std::filesystem::path& path, const ColoredSurface& surface);
-/// `v x y z r g b` (sRGB in [0, 1]), `vn`, one object per piece with groups skin, section_0, section_1 ...
+/// `v x y z r g b` (sRGB in [0, 1]), `vn`, points shared as in PLY; one object per piece with groups skin, section_0
+/// ... Edges between skin and section are shaded softly in both; GLB keeps them sharp.
 void write_obj(const std::filesystem::path& path, const ColoredSurface& surface, const std::string& name = "pith");
 /// Binary; no colour.
 void write_stl(const std::filesystem::path& path, const ColoredSurface& surface);

@@ -69,20 +69,17 @@ void write_ply(const std::filesystem::path& path, const ColoredSurface& surface)
       std::to_string(weld.vertex.size()) +
       "\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\n"
       "property float nz\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement face " +
-      std::to_string(surface.triangle.size()) +
-      "\nproperty list uchar int vertex_indices\nproperty int piece\nend_header\n";
-  bytes.reserve(bytes.size() + 27 * weld.vertex.size() + 17 * surface.triangle.size());
+      std::to_string(surface.triangle.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
+  bytes.reserve(bytes.size() + 27 * weld.vertex.size() + 13 * surface.triangle.size());
   for (const auto& vertex : weld.vertex) {
     for (int i = 0; i < 3; ++i) append(bytes, static_cast<float>(surface.position[vertex.point][i]));
     for (int i = 0; i < 3; ++i) append(bytes, vertex.normal[i]);
     for (const std::uint8_t c : vertex.color) append(bytes, c);
   }
-  for (const auto& part : surface.part)
-    for (std::uint32_t t = part.triangle_begin; t < part.triangle_end; ++t) {
-      append(bytes, std::uint8_t(3));
-      for (const std::uint32_t v : surface.triangle[t]) append(bytes, static_cast<std::int32_t>(weld.of[v]));
-      append(bytes, static_cast<std::int32_t>(part.piece));
-    }
+  for (const auto& triangle : surface.triangle) {
+    append(bytes, std::uint8_t(3));
+    for (const std::uint32_t v : triangle) append(bytes, static_cast<std::int32_t>(weld.of[v]));
+  }
   write_file(path, bytes);
 }
 
@@ -95,7 +92,7 @@ void write_obj(const std::filesystem::path& path, const ColoredSurface& surface,
     for (const std::uint8_t c : vertex.color) append_text(text += ' ', static_cast<float>(c) / 255);
     text += '\n';
   }
-  for (const auto& vertex : surface.vertex) {
+  for (const auto& vertex : weld.vertex) {
     text += "vn";
     for (int i = 0; i < 3; ++i) append_text(text += ' ', vertex.normal[i]);
     text += '\n';
@@ -108,8 +105,10 @@ void write_obj(const std::filesystem::path& path, const ColoredSurface& surface,
             (part.cut.exists() ? "_section_" + std::to_string(part.cut) : "_skin") + "\n";
     for (std::uint32_t t = part.triangle_begin; t < part.triangle_end; ++t) {
       text += "f";
-      for (const std::uint32_t v : surface.triangle[t])
-        text += " " + std::to_string(weld.of[v] + 1) + "//" + std::to_string(v + 1);
+      for (const std::uint32_t v : surface.triangle[t]) {
+        const std::string number = std::to_string(weld.of[v] + 1);
+        text += " " + number + "//" + number;
+      }
       text += '\n';
     }
   }
