@@ -215,6 +215,22 @@ TEST(Tetrahedralize, HolesAreClosedAndSaidSo) {
   EXPECT_GT(result.surface.triangle_count(), sphere.triangle_count()); // the lids follow the input's triangles
 }
 
+TEST(Tetrahedralize, FewFaultsAreCutOutAndTheRestStays) {
+  TriMesh sphere = sphere_surface(4);
+  const double whole = signed_volume(sphere);
+  sphere.position[VertexId(40u)] *= -1.05; // a spike through the other side
+  ASSERT_GT(surface_defects(sphere).self_intersecting_triangles, 6u);
+  const TetrahedralizeResult result = tetrahedralize(sphere, "spike", usual());
+  expect_sound(result);
+  EXPECT_EQ(result.method, "tetgen");
+  EXPECT_NE(result.note.find("cut out and closed"), std::string::npos) << result.note;
+  EXPECT_NEAR(region_volume(result.mesh, 0), whole, 0.01 * whole);
+  EXPECT_LT(result.surface_moved, 0.8); // of the walls of the spike, inside
+  std::size_t kept = 0;
+  for (const TriangleId t : result.input) kept += t < sphere.triangle_count() ? 1 : 0;
+  EXPECT_GT(kept, sphere.triangle_count() * 95 / 100);
+}
+
 TEST(Tetrahedralize, CrossingShellsAreWrapped) {
   const TriMesh cross = together(box_surface({-3, -1, -1}, {3, 1, 1}), box_surface({-1, -3, -0.9}, {1, 3, 0.9}));
   const TetrahedralizeResult result = tetrahedralize(cross, "cross", usual());

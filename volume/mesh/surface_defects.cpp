@@ -69,7 +69,6 @@ SurfaceDefects defects_of(const TriMesh& mesh, bool with_intersections) {
 
   // Edges: what two triangles share.
   const std::vector<surface::EdgeSide> sides = surface::edge_sides(mesh);
-  surface::DisjointSets fans(3 * mesh.triangle_count()); // of corners, joined through the edges at their vertex
   surface::for_each_edge(sides, [&](const surface::EdgeSide* first, const surface::EdgeSide* last) {
     const auto count = last - first;
     std::size_t* defect = nullptr;
@@ -83,26 +82,14 @@ SurfaceDefects defects_of(const TriMesh& mesh, bool with_intersections) {
       ++*defect;
       note((mesh.position[VertexId(first->low)] + mesh.position[VertexId(first->high)]) / 2);
     }
-    const auto corner_at = [](const surface::EdgeSide& side, bool low) {
-      const std::uint32_t from = side.corner, to = side.corner % 3 == 2 ? side.corner - 2 : side.corner + 1;
-      return side.forward == low ? from : to;
-    };
-    for (const surface::EdgeSide* side = first + 1; side < last; ++side)
-      for (const bool low : {true, false}) fans.join(corner_at(*first, low), corner_at(*side, low));
   });
 
-  // Vertices whose corners form more than one fan.
-  PerVertex<std::uint32_t> fan(mesh.vertex_count(), ~0u);
-  PerVertex<char> torn(mesh.vertex_count(), 0);
-  for (const surface::EdgeSide& side : sides) { // every corner of a proper triangle starts one side
-    const VertexId v = mesh.corner[TriangleId(side.corner / 3)][side.corner % 3];
-    const std::uint32_t found = fans.representative(side.corner);
-    if (fan[v] == ~0u) fan[v] = found;
-    if (fan[v] == found || torn[v]) continue;
-    torn[v] = 1;
-    ++defects.non_manifold_vertices;
-    note(mesh.position[v]);
-  }
+  const PerVertex<char> torn = surface::torn_vertices(mesh, sides);
+  for (const VertexId v : all_ids<VertexId>(mesh.vertex_count()))
+    if (torn[v]) {
+      ++defects.non_manifold_vertices;
+      note(mesh.position[v]);
+    }
 
   // Triangles with the same three corners.
   std::vector<std::array<std::uint32_t, 4>> sorted;

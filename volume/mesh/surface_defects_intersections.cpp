@@ -46,6 +46,24 @@ bool meet(const TriMesh& mesh, TriangleId first, TriangleId second) {
   return CGAL::do_intersect(triangle_a, triangle_b);
 }
 
+/// Calls body(first, second) for the pairs of triangles whose boxes overlap; collinear ones take no part.
+template <class Body>
+void for_each_close_pair(const TriMesh& mesh, const PerTriangle<char>& collinear, const Body& body) {
+  std::vector<Box3> boxes;
+  boxes.reserve(mesh.triangle_count());
+  for (const TriangleId t : all_ids<TriangleId>(mesh.triangle_count())) {
+    if (collinear[t]) continue;
+    CGAL::Bbox_3 box;
+    for (const VertexId v : mesh.corner[t]) box += point_of(mesh, v).bbox();
+    boxes.emplace_back(box, t.value);
+  }
+  std::vector<const Box3*> pointers;
+  for (const Box3& box : boxes) pointers.push_back(&box);
+  CGAL::box_self_intersection_d(pointers.begin(), pointers.end(), [&](const Box3* a, const Box3* b) {
+    body(TriangleId(a->info()), TriangleId(b->info()));
+  });
+}
+
 } // namespace
 
 PerTriangle<char> collinear_triangles(const TriMesh& mesh) {
@@ -59,23 +77,21 @@ PerTriangle<char> collinear_triangles(const TriMesh& mesh) {
 }
 
 PerTriangle<char> intersecting_triangles(const TriMesh& mesh, const PerTriangle<char>& collinear) {
-  std::vector<Box3> boxes;
-  boxes.reserve(mesh.triangle_count());
-  for (const TriangleId t : all_ids<TriangleId>(mesh.triangle_count())) {
-    if (collinear[t]) continue;
-    CGAL::Bbox_3 box;
-    for (const VertexId v : mesh.corner[t]) box += point_of(mesh, v).bbox();
-    boxes.emplace_back(box, t.value);
-  }
-  std::vector<const Box3*> pointers;
-  for (const Box3& box : boxes) pointers.push_back(&box);
   PerTriangle<char> found(mesh.triangle_count(), 0);
-  CGAL::box_self_intersection_d(pointers.begin(), pointers.end(), [&](const Box3* a, const Box3* b) {
-    const TriangleId first(a->info()), second(b->info());
+  for_each_close_pair(mesh, collinear, [&](TriangleId first, TriangleId second) {
     if (found[first] && found[second]) return;
     if (meet(mesh, first, second)) found[first] = found[second] = 1;
   });
   return found;
+}
+
+bool parts_cross(const TriMesh& mesh, const PerTriangle<char>& collinear, const PerTriangle<std::uint32_t>& part) {
+  bool cross = false;
+  for_each_close_pair(mesh, collinear, [&](TriangleId first, TriangleId second) {
+    if (!cross && part[first] != part[second] && part[first] != 0 && part[second] != 0)
+      cross = meet(mesh, first, second);
+  });
+  return cross;
 }
 
 } // namespace pith::surface

@@ -12,6 +12,9 @@ PerTriangle<char> collinear_triangles(const TriMesh& mesh);
 /// Cost: 0.1 s for 80,000 triangles of a clean surface.
 PerTriangle<char> intersecting_triangles(const TriMesh& mesh, const PerTriangle<char>& collinear);
 
+/// Whether triangles of two different parts meet; `part` numbers the triangles' parts, and 0 stands for none.
+bool parts_cross(const TriMesh& mesh, const PerTriangle<char>& collinear, const PerTriangle<std::uint32_t>& part);
+
 /// `surface_defects` without the search for self-intersections, which is most of its cost.
 SurfaceDefects defects_but_intersections(const TriMesh& mesh);
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double most_tets = 100e6;
 constexpr double most_moved =
-    0.03; // of the diagonal: what cutting out faults may cost, before wrapping is the better way
+    0.03; // of the diagonal: what cutting out faults may cost outside, before wrapping is the better way
 
 std::string short_number(double value) {
   char text[32];
@@ -153,6 +153,18 @@ std::string fill_clean(surface::Repaired ready, const std::string& name, const T
   return failure;
 }
 
+/// Whether every part of the original that lies far from the mended surface is buried inside it (crumbs, inner
+/// walls).
+bool nothing_lost(const TriMesh& original, const TriMesh& mended) {
+  surface::Shell all;
+  for (const TriangleId t : all_ids<TriangleId>(mended.triangle_count())) all.triangle.push_back(t);
+  const double limit = most_moved * bounds_of(original).diagonal();
+  const std::vector<Vec3d> far = wrap::samples_farther(original, mended, limit);
+  if (far.size() * mended.triangle_count() > 20'000'000) return false; // too much is gone to look at it all
+  return std::all_of(far.begin(), far.end(),
+                     [&](const Vec3d& p) { return std::abs(surface::winding_number(mended, all, p)) > 0.5; });
+}
+
 /// A wrap that has an inside worth the name, with a wider alpha where the surface's holes let the wrap in.
 TriMesh solid_wrap(const TriMesh& mesh, const std::string& name, const TetrahedralizeOptions& options,
                    double& alpha_used) {
@@ -251,7 +263,7 @@ TetrahedralizeResult tetrahedralize(const TriMesh& input, const std::string& nam
   if (!surface::can_be_filled(defects)) {
     if (const std::size_t cut_out = surface::cut_out_faults(ready); cut_out > 0) {
       moved = wrap::largest_distance(input, ready.mesh);
-      if (moved <= most_moved * bounds_of(input).diagonal()) {
+      if (nothing_lost(input, ready.mesh)) {
         defects = surface_defects(ready.mesh);
         comma(mended, std::to_string(cut_out) +
                           " triangles at fault cut out and closed, which moved the surface by up to " +

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t longest_planned_loop = 500; // its cost grows with the cube of the length
 constexpr double most_faulty = 0.2;               // of the triangles; beyond, cutting out would make another object
-constexpr int rounds = 4;
+constexpr int rounds = 6;
 
 using Loop = std::vector<VertexId>;
 
@@ -132,11 +132,36 @@ std::size_t mark_faults(const TriMesh& mesh, PerTriangle<char>& fault) {
   const PerTriangle<char> collinear = collinear_triangles(mesh);
   fault = intersecting_triangles(mesh, collinear);
   for (const TriangleId t : all_ids<TriangleId>(mesh.triangle_count())) fault[t] |= collinear[t];
-  for_each_edge(edge_sides(mesh), [&](const EdgeSide* first, const EdgeSide* last) {
-    if (last - first == 1 || (last - first == 2 && first[0].forward != first[1].forward)) return;
+  const std::vector<EdgeSide> sides = edge_sides(mesh);
+  for_each_edge(sides, [&](const EdgeSide* first, const EdgeSide* last) { // borders too: those that form no loop
+    if (last - first == 2 && first[0].forward != first[1].forward) return;
     for (const EdgeSide* side = first; side < last; ++side) fault[TriangleId(side->corner / 3)] = 1;
   });
+  const PerVertex<char> torn = torn_vertices(mesh, sides);
+  for (const TriangleId t : all_ids<TriangleId>(mesh.triangle_count()))
+    for (const VertexId v : mesh.corner[t]) fault[t] |= torn[v];
   return static_cast<std::size_t>(std::count(fault.begin(), fault.end(), 1));
+}
+
+/// Whether shells that matter run through one another (a handle through a wall). Cutting would part them with a gap.
+bool large_parts_cross(const TriMesh& mesh) {
+  constexpr double matters = 0.01; // of the area
+  const std::vector<Shell> shells = shells_of(mesh, edge_sides(mesh));
+  std::vector<double> area(shells.size(), 0);
+  double whole = 0;
+  for (std::size_t s = 0; s < shells.size(); ++s) {
+    for (const TriangleId t : shells[s].triangle) {
+      const auto& c = mesh.corner[t];
+      const auto& p = mesh.position;
+      area[s] += 0.5 * (p[c[1]] - p[c[0]]).cross(p[c[2]] - p[c[0]]).norm();
+    }
+    whole += area[s];
+  }
+  PerTriangle<std::uint32_t> part(mesh.triangle_count(), 0);
+  for (std::size_t s = 0; s < shells.size(); ++s)
+    if (area[s] > matters * whole)
+      for (const TriangleId t : shells[s].triangle) part[t] = static_cast<std::uint32_t>(s + 1);
+  return parts_cross(mesh, collinear_triangles(mesh), part);
 }
 
 /// Marks the triangles that share a vertex with a marked one.
@@ -190,6 +215,7 @@ std::size_t close_holes(Repaired& surface, double& widest) {
 }
 
 std::size_t cut_out_faults(Repaired& surface) {
+  if (large_parts_cross(surface.mesh)) return 0;
   Repaired trial = surface;
   std::size_t gone = 0;
   for (int round = 0; round <= rounds; ++round) {

@@ -31,8 +31,9 @@ std::size_t close_holes(Repaired& surface, double& widest);
 
 /// Cuts out the triangles that meet others where they must not, stand at non-manifold or misoriented edges or have no
 /// area, with a margin that grows from round to round, and closes the holes that this leaves, until the surface is
-/// clean. Does so only where few triangles are at fault. Returns how many were cut out; 0, with the surface as it
-/// was, when the surface cannot be mended so.
+/// clean. Does so only where few triangles are at fault and no two large shells run through one another: cutting
+/// would part them with a gap. Returns how many were cut out; 0, with the surface as it was, when the surface cannot
+/// be mended so.
 std::size_t cut_out_faults(Repaired& surface);
 
 /// Whether TetGen can take the surface. Shells that are inside out do not matter here: they are turned on the way.

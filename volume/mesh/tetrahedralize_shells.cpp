@@ -46,6 +46,27 @@ void DisjointSets::join(std::uint32_t a, std::uint32_t b) {
   parent_[std::max(a, b)] = std::min(a, b);
 }
 
+PerVertex<char> torn_vertices(const TriMesh& mesh, const std::vector<EdgeSide>& sides) {
+  DisjointSets fans(3 * mesh.triangle_count()); // of corners, joined through the edges at their vertex
+  const auto corner_at = [](const EdgeSide& side, bool low) {
+    const std::uint32_t from = side.corner, to = side.corner % 3 == 2 ? side.corner - 2 : side.corner + 1;
+    return side.forward == low ? from : to;
+  };
+  for_each_edge(sides, [&](const EdgeSide* first, const EdgeSide* last) {
+    for (const EdgeSide* side = first + 1; side < last; ++side)
+      for (const bool low : {true, false}) fans.join(corner_at(*first, low), corner_at(*side, low));
+  });
+  PerVertex<std::uint32_t> fan(mesh.vertex_count(), ~0u);
+  PerVertex<char> torn(mesh.vertex_count(), 0);
+  for (const EdgeSide& side : sides) { // every corner of a proper triangle starts one side
+    const VertexId v = mesh.corner[TriangleId(side.corner / 3)][side.corner % 3];
+    const std::uint32_t found = fans.representative(side.corner);
+    if (fan[v] == ~0u) fan[v] = found;
+    if (fan[v] != found) torn[v] = 1;
+  }
+  return torn;
+}
+
 double winding_number(const TriMesh& mesh, const Shell& shell, const Vec3d& point) {
   double angle = 0;
   for (const TriangleId t : shell.triangle) {

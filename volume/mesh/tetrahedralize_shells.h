@@ -38,6 +38,9 @@ private:
   std::vector<std::uint32_t> parent_;
 };
 
+/// Which vertices are held together by nothing but themselves: their triangles form more than one fan.
+PerVertex<char> torn_vertices(const TriMesh& mesh, const std::vector<EdgeSide>& sides);
+
 /// A connected component of a surface (through edges), numbered by its first triangle.
 struct Shell {
   std::vector<TriangleId> triangle;

@@ -49,17 +49,18 @@ TriMesh wrapped(const TriMesh& mesh, double alpha, double offset) {
   return result;
 }
 
-double largest_distance(const TriMesh& from, const TriMesh& to) {
+namespace {
+
+/// Calls body(point, squared distance to `to`) for the vertices in use and the triangle centres of `from`.
+template <class Body>
+void for_each_sample(const TriMesh& from, const TriMesh& to, const Body& body) {
   using Primitive = CGAL::AABB_triangle_primitive<Kernel, std::vector<Kernel::Triangle_3>::const_iterator>;
   std::vector<Kernel::Triangle_3> triangles;
   for (const auto& c : to.corner)
     triangles.emplace_back(point_of(to.position[c[0]]), point_of(to.position[c[1]]), point_of(to.position[c[2]]));
   CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>> tree(triangles.begin(), triangles.end());
   tree.accelerate_distance_queries();
-  double largest = 0;
-  const auto measure = [&](const Vec3d& p) {
-    largest = std::max(largest, CGAL::to_double(tree.squared_distance(point_of(p))));
-  };
+  const auto measure = [&](const Vec3d& p) { body(p, CGAL::to_double(tree.squared_distance(point_of(p)))); };
   PerVertex<char> used(from.vertex_count(), 0);
   for (const auto& c : from.corner) {
     for (const VertexId v : c) used[v] = 1;
@@ -67,7 +68,22 @@ double largest_distance(const TriMesh& from, const TriMesh& to) {
   }
   for (const VertexId v : all_ids<VertexId>(from.vertex_count()))
     if (used[v]) measure(from.position[v]);
+}
+
+} // namespace
+
+double largest_distance(const TriMesh& from, const TriMesh& to) {
+  double largest = 0;
+  for_each_sample(from, to, [&](const Vec3d&, double squared) { largest = std::max(largest, squared); });
   return std::sqrt(largest);
+}
+
+std::vector<Vec3d> samples_farther(const TriMesh& from, const TriMesh& to, double distance) {
+  std::vector<Vec3d> found;
+  for_each_sample(from, to, [&](const Vec3d& p, double squared) {
+    if (squared > distance * distance) found.push_back(p);
+  });
+  return found;
 }
 
 } // namespace pith::wrap

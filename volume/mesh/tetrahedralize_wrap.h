@@ -10,6 +10,9 @@ namespace pith::wrap {
 /// Portaneri, Rouxel-Labbé, Hemmer, Cohen-Steiner, Alliez: Alpha wrapping with an offset (SIGGRAPH 2022).
 TriMesh wrapped(const TriMesh& mesh, double alpha, double offset);
 
+/// The vertices and triangle centres of `from` that lie farther than `distance` (mm) from the surface `to`.
+std::vector<Vec3d> samples_farther(const TriMesh& from, const TriMesh& to, double distance);
+
 /// The largest distance from the vertices and triangle centres of `from` to the surface `to`, mm.
 double largest_distance(const TriMesh& from, const TriMesh& to);
 
