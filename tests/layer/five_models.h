@@ -27,8 +27,7 @@ inline Model masked_images() {
   Model model = cube_model(2, size);
   Layer solid = solid_layer(model, size, 1);
   solid.exemplar = {constant("white", 3, {255, 255, 255})};
-  solid.mask = {full_mask(3, 255)};
-  solid.patch[0] = {0, 0, {}, 0};
+  solid.patch[0] = {0, Patch::no_mask, {}, 0};
   Layer skin;
   skin.name = "skin";
   skin.domain = Domain::skin;
