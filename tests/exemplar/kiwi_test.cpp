@@ -77,8 +77,8 @@ TEST(Kiwi, SameBytesWhateverTheThreads) {
 }
 
 TEST(Kiwi, GoldenBytes) {
-  EXPECT_EQ(hash_of_texels(procedural_exemplar("kiwi", {.resolution = 64, .seed = 1})), 4088164689546058627ull);
-  EXPECT_EQ(hash_of_texels(kiwi_128()), 4048164689877325216ull);
+  EXPECT_EQ(hash_of_texels(procedural_exemplar("kiwi", {.resolution = 64, .seed = 1})), 9617131484889467607ull);
+  EXPECT_EQ(hash_of_texels(kiwi_128()), 1007638659596731062ull);
   EXPECT_NE(hash_of_texels(procedural_exemplar("kiwi", {.resolution = 64, .seed = 2})),
             hash_of_texels(procedural_exemplar("kiwi", {.resolution = 64, .seed = 1})));
 }
@@ -110,8 +110,8 @@ TEST(Kiwi, SeedsDoNotTouchAndStayInTheFlesh) {
     const std::vector<KiwiSeed> seeds = kiwi_seeds(seed);
     // Across the fruit a section shows about 57 seeds (photograph, with those that shine through); 13 locules a
     // width.
-    EXPECT_GE(seeds.size(), 280u);
-    EXPECT_LE(seeds.size(), 420u);
+    EXPECT_GE(seeds.size(), 340u);
+    EXPECT_LE(seeds.size(), 470u);
     for (std::size_t i = 0; i < seeds.size(); ++i) {
       const KiwiSeed& a = seeds[i];
       EXPECT_GT(kiwi_radius_at_depth(a.y - a.half_length), 0.30f);

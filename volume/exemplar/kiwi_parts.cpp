@@ -30,9 +30,9 @@ float kiwi_radius_at_depth(float depth) { return std::sqrt(std::max(0.0f, 1.0f -
 std::vector<KiwiSeed> kiwi_seeds(std::uint64_t seed) {
   // Measured in the photographed section: seeds lie at 0.30 … 0.56 of the radius, are 0.079 ± 0.01 of it long and
   // 0.042 wide where cut whole. They are drawn a little larger (0.094 and 0.052: 2.3 × 1.3 mm in a fruit 49 mm wide).
-  constexpr int rows = 3, per_row = 13;
+  constexpr int rows = 3, per_row = 17;
   constexpr std::array<float, rows + 1> radius_of_row{0.325f, 0.390f, 0.455f, 0.535f};
-  constexpr float gap = 0.017f;
+  constexpr float gap = 0.013f;
   const PeriodicNoise warp = kiwi::locule_warp(seed);
   std::vector<KiwiSeed> seeds;
   for (int locule = 0; locule < kiwi_locules; ++locule)
