@@ -2,6 +2,7 @@
 #include "volume/mesh/tet_mesh.h"
 
 #include "volume/base/error.h"
+#include "volume/base/parallel.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -54,7 +55,8 @@ void connect(TetMesh& mesh) {
       sides[next[v[0]]++] = {v[1], v[2], static_cast<std::uint32_t>(4 * t + i)};
     }
 
-  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+  // Buckets share no facet, so they may be worked on side by side.
+  parallel_for(mesh.vertex_count(), 4096, [&](std::size_t v) {
     const auto first = sides.begin() + begin[v], last = sides.begin() + begin[v + 1];
     std::sort(first, last, [](const FacetSide& a, const FacetSide& b) {
       return a.middle != b.middle ? a.middle < b.middle : a.high != b.high ? a.high < b.high : a.side < b.side;
@@ -71,7 +73,7 @@ void connect(TetMesh& mesh) {
       }
       at = end;
     }
-  }
+  });
 }
 
 double signed_volume(const TetMesh& mesh, TetId tet) {

@@ -3,6 +3,8 @@
 // on its way that TetGen kept every triangle and made tets nowhere else.
 #include "volume/mesh/tetrahedralize_regions.h"
 
+#include "volume/base/parallel.h"
+
 #include <algorithm>
 #include <numeric>
 
@@ -113,21 +115,27 @@ Regions outward_with_regions(TriMesh& mesh, std::size_t& turned) {
 
 std::string label_tets(const TriMesh& surface, const Regions& regions, TetMesh& mesh,
                        std::vector<TriangleId>& input) {
-  for (const TetId t : all_ids<TetId>(mesh.tet_count()))
-    if (signed_volume(mesh, t) < 0) std::swap(mesh.corner[t][2], mesh.corner[t][3]);
-  std::size_t flat = 0;
-  for (const TetId t : all_ids<TetId>(mesh.tet_count())) flat += signed_volume(mesh, t) > 0 ? 0 : 1;
-  if (flat > 0) return std::to_string(flat) + " of its tets have no volume";
+  PerTet<char> flat(mesh.tet_count(), 0);
+  parallel_for(mesh.tet_count(), 16384, [&](std::size_t i) {
+    const TetId t(i);
+    const double volume = signed_volume(mesh, t);
+    if (volume < 0) std::swap(mesh.corner[t][2], mesh.corner[t][3]);
+    flat[t] = volume == 0 || !(signed_volume(mesh, t) > 0) ? 1 : 0;
+  });
+  if (const auto count = std::count(flat.begin(), flat.end(), 1); count > 0)
+    return std::to_string(count) + " of its tets have no volume";
   connect(mesh);
 
   // Facets on the surface.
   const TriangleTable table(surface);
   input.assign(4 * mesh.tet_count(), {});
+  parallel_for(mesh.tet_count(), 16384, [&](std::size_t t) {
+    for (int i = 0; i < 4; ++i) input[4 * t + i] = table.find(facet_of(mesh, TetId(t), i));
+  });
   PerTriangle<char> found(surface.triangle_count(), 0);
   for (const TetId t : all_ids<TetId>(mesh.tet_count()))
     for (int i = 0; i < 4; ++i) {
-      const TriangleId triangle = table.find(facet_of(mesh, t, i));
-      input[4 * std::size_t(t) + i] = triangle;
+      const TriangleId triangle = input[4 * std::size_t(t) + i];
       if (triangle.exists())
         found[triangle] = 1;
       else if (!mesh.neighbor[t][i].exists())
