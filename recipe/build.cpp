@@ -9,6 +9,7 @@
 #include "volume/io/atomic_file.h"
 #include "volume/io/exemplar_io.h"
 #include "volume/io/mesh_io.h"
+#include "volume/mesh/refine.h"
 
 #include <algorithm>
 #include <chrono>
@@ -147,6 +148,7 @@ public:
                        ? whole_piece(model.mesh)
                        : *pieces_after(model, recipe_.cuts.size() + recipe_.moves.size());
     built.stages = run_.reports();
+    built.fills = std::move(fills_);
     return built;
   }
 
@@ -164,8 +166,14 @@ private:
         run_.key("surface").add(key_of(file_content(surface_path_))).add(extension).add(recipe_.surface.scale).key();
     run_.announce("surface", surface_key_);
     KeyMaker tets = run_.key("tets").add(surface_key_);
-    tets_key_ = add(tets, recipe_.tetrahedralize).key();
-    run_.announce("tets", tets_key_);
+    Key meshed = add(tets, recipe_.tetrahedralize).key();
+    run_.announce("tets", meshed);
+    KeyMaker refined = run_.key("refine").add(meshed);
+    for (const std::vector<Vec3d>& stroke : axis_strokes())
+      for (const Vec3d& x : stroke) refined.add(x.x()).add(x.y()).add(x.z());
+    tets_key_ = refined.key();
+    meshed_key_ = meshed;
+    run_.announce("refine", tets_key_);
     for (std::size_t i = 0; i < recipe_.solids.size(); ++i) {
       const Solid& solid = recipe_.solids[i];
       SolidKeys keys;
@@ -204,8 +212,29 @@ private:
     return maker.add(path.extension().string()).add(key_of(file_content(path))).key();
   }
 
+  /// Strokes inside the solids that mark an innermost place: they should run through vertices.
+  std::vector<std::vector<Vec3d>> axis_strokes() const {
+    std::vector<std::vector<Vec3d>> strokes;
+    for (const Solid& solid : recipe_.solids)
+      for (const DepthConstraint& constraint : solid.depth)
+        if (constraint.value == 1 && constraint.stroke.size() > 1) strokes.push_back(constraint.stroke);
+    return strokes;
+  }
+
+  /// The root: what TetGen made, refined once for all that follows.
   std::shared_ptr<const TetrahedralizeResult> root() {
-    return run_.result<TetrahedralizeResult>("tets", tets_key_, true, [&](const Progress& progress) {
+    return run_.result<TetrahedralizeResult>("refine", tets_key_, true, [&](const Progress&) {
+      const auto meshed = tets();
+      TetrahedralizeResult result = *meshed;
+      RefineResult refined = refine(meshed->mesh, meshed->input, {.stroke = axis_strokes()});
+      result.mesh = std::move(refined.mesh);
+      result.input = std::move(refined.input);
+      return result;
+    });
+  }
+
+  std::shared_ptr<const TetrahedralizeResult> tets() {
+    return run_.result<TetrahedralizeResult>("tets", meshed_key_, true, [&](const Progress& progress) {
       const auto surface = run_.result<TriMesh>("surface", surface_key_, false, [&](const Progress&) {
         return read_tri_mesh(surface_path_, recipe_.surface.scale);
       });
@@ -250,7 +279,7 @@ private:
       return procedural_exemplar(source.procedural, {.resolution = source.resolution, .seed = source.seed});
     });
     // The exemplar has a cache entry of its own: the fill's is stored without it.
-    const auto fill = run_.result<Layer>(numbered("fill", i), keys.fill, true, [&](const Progress& progress) {
+    const auto fill = run_.result<LapResult>(numbered("fill", i), keys.fill, true, [&](const Progress& progress) {
       const LapInput input{.mesh = model.mesh,
                            .boundary = model.boundary,
                            .region = solid.region,
@@ -258,12 +287,13 @@ private:
                            .scale = frames->scale,
                            .depth = depth->value,
                            .singular = frames->singular};
-      Layer layer = lap(input, *exemplar, solid.fill, progress).layer;
-      layer.exemplar.clear();
-      return layer;
+      LapResult result = lap(input, *exemplar, solid.fill, progress);
+      result.layer.exemplar.clear();
+      return result;
     });
     add_fields(model, solid.region, *depth, *frames, vertex_taken);
-    Layer layer = *fill;
+    fills_.push_back({i, fill->statistics});
+    Layer layer = fill->layer;
     layer.exemplar = {*exemplar};
     return layer;
   }
@@ -330,8 +360,9 @@ private:
   const Recipe& recipe_;
   const fs::path& folder_;
   fs::path surface_path_;
-  Key surface_key_, tets_key_;
+  Key surface_key_, meshed_key_, tets_key_;
   std::vector<SolidKeys> solid_keys_;
+  std::vector<FillReport> fills_;
   std::vector<Key> step_keys_;
   std::unique_ptr<Locator> locator_;
 };
@@ -347,7 +378,7 @@ std::map<std::string, std::string> BuildResult::keys() const {
 void add_last_cut(std::map<std::string, std::string>& keys, const Recipe& recipe) {
   std::erase_if(keys, [](const auto& entry) { return entry.first.starts_with("move "); });
   const std::size_t last = recipe.cuts.size() - 1;
-  const std::string before = last == 0 ? "tets" : "cut " + std::to_string(last - 1);
+  const std::string before = last == 0 ? "refine" : "cut " + std::to_string(last - 1);
   const auto found = keys.find(before);
   if (found == keys.end()) return; // a model that was not built from a recipe
   KeyMaker cut(code_version());

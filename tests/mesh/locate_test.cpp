@@ -37,7 +37,7 @@ TEST(Orientation, IsExactWhereDoublesRoundToZero) {
 }
 
 TEST(Locator, AgreesWithExhaustiveSearchAtRandomAndDegeneratePoints) {
-  TetMesh mesh = testing::tet_grid(4, 3, 5, 1.0);
+  TetMesh mesh = tet_grid(4, 3, 5, 1.0);
   for (TetId t : all_ids<TetId>(mesh.tet_count()))
     mesh.region[t] = barycenter(mesh, t).z() > 0.5 * bounds_of(mesh).high.z();
   const Boundary boundary = boundary_of(mesh);
@@ -73,7 +73,7 @@ TEST(Locator, AgreesWithExhaustiveSearchAtRandomAndDegeneratePoints) {
 }
 
 TEST(Locator, TakesTheNearestTetForPointsOutside) {
-  const TetMesh mesh = testing::tet_grid(3, 3, 3, 1.0);
+  const TetMesh mesh = tet_grid(3, 3, 3, 1.0);
   const Boundary boundary = boundary_of(mesh);
   const Locator locator(mesh, boundary);
   const Box box = bounds_of(mesh);
