@@ -10,7 +10,7 @@ struct FramingOptions {
   Vec3d direction{0, 0, 0};
   double vertical_angle = 0.45; ///< radians; 0: orthographic
   double aspect = 4.0 / 3.0;    ///< width / height
-  double margin = 0.12;         ///< free border, as a fraction of the picture
+  double margin = 0.2;          ///< free border, as a fraction of the picture
 };
 
 /// The closest view along the direction in which every point of the pieces lies inside the border. `up` is the

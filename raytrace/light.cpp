@@ -83,14 +83,16 @@ Lights default_lights(const View& view, const Vec3d& center, double radius, cons
   const Vec3d right = up.cross(near).normalized();
 
   Lights lights;
-  lights.environment.zenith = {0.52, 0.55, 0.60};
-  lights.environment.horizon = {0.42, 0.42, 0.42};
-  lights.environment.nadir = {0.25, 0.24, 0.23};
-  // Key: a large box, high on the left and a little in front, warm. Rim: narrow, behind on the right.
-  lights.area.push_back(soft_box(center, up * 1.0 - right * 0.8 + near * 0.35, up, 5 * radius, 3.2 * radius,
-                                 3.2 * radius, 4.3 * Vec3d(1.02, 1.0, 0.96)));
-  lights.area.push_back(soft_box(center, up * 0.65 + right * 0.8 - near * 0.9, up, 5 * radius, 1.2 * radius,
-                                 3.0 * radius, 2.5 * Vec3d(0.97, 1.0, 1.04)));
+  lights.environment.zenith = {0.66, 0.68, 0.72};
+  lights.environment.horizon = {0.52, 0.52, 0.52};
+  lights.environment.nadir = {0.30, 0.29, 0.28};
+  // Key: a large warm box, high on the left and in front, so that a section that faces the eye is lit across its
+  // relief. Rim: narrower and cooler, behind on the right; it draws the skin's edge and a sheen on what faces
+  // upwards.
+  lights.area.push_back(soft_box(center, 0.95 * up - 0.75 * right + 0.8 * near, up, 5 * radius, 3 * radius,
+                                 3 * radius, 5.2 * Vec3d(1.03, 1.0, 0.95)));
+  lights.area.push_back(soft_box(center, 0.75 * up + 0.75 * right - 0.95 * near, up, 5 * radius, 1.6 * radius,
+                                 3 * radius, 3.5 * Vec3d(0.97, 1.0, 1.04)));
   return lights;
 }
 

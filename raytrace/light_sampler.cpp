@@ -101,9 +101,13 @@ Vec3d EnvironmentSampler::radiance_at(double column, double cosine) const {
   return environment_.scale * (above + (y - y0) * (below - above));
 }
 
+double EnvironmentSampler::column_of(const Vec3d& direction) const {
+  if (columns_ == 1) return 0.5;
+  return 0.5 + std::atan2(direction.dot(frame_.right), direction.dot(frame_.forward)) / (2 * pi);
+}
+
 Vec3d EnvironmentSampler::radiance(const Vec3d& direction) const {
-  const double column = 0.5 + std::atan2(direction.dot(frame_.right), direction.dot(frame_.forward)) / (2 * pi);
-  return radiance_at(column, direction.dot(frame_.up));
+  return radiance_at(column_of(direction), direction.dot(frame_.up));
 }
 
 Vec3d EnvironmentSampler::sample(const std::array<double, 2>& u, double& density) const {
@@ -118,7 +122,7 @@ Vec3d EnvironmentSampler::sample(const std::array<double, 2>& u, double& density
 }
 
 std::size_t EnvironmentSampler::cell_of(const Vec3d& direction) const {
-  const double column = 0.5 + std::atan2(direction.dot(frame_.right), direction.dot(frame_.forward)) / (2 * pi);
+  const double column = column_of(direction);
   const double cosine = direction.dot(frame_.up);
   const auto below = std::lower_bound(row_cosine_.begin() + 1, row_cosine_.end(), cosine, std::greater<double>());
   const int r = std::clamp(static_cast<int>(below - row_cosine_.begin()) - 1, 0, rows_ - 1);

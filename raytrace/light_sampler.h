@@ -32,6 +32,7 @@ public:
   Vec3d upward_irradiance() const;
 
 private:
+  double column_of(const Vec3d& direction) const; ///< 0 … 1
   std::size_t cell_of(const Vec3d& direction) const;
   Vec3d radiance_at(double column, double row_cosine) const;
 

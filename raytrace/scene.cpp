@@ -24,6 +24,23 @@ struct Candidate {
   }
 };
 
+/// A candidate recomputed in double.
+struct Crossing {
+  std::uint32_t surface, triangle;
+  double distance, u, v;
+  Vec3d rest;
+};
+
+/// Weights u, v, 1 − u − v brought into [0, 1].
+void clamp_to_triangle(double& u, double& v) {
+  u = std::clamp(u, 0.0, 1.0);
+  v = std::clamp(v, 0.0, 1.0);
+  if (const double sum = u + v; sum > 1) {
+    u /= sum;
+    v /= sum;
+  }
+}
+
 /// The context of one query: Embree hands its address to the filter.
 struct Query {
   RTCIntersectContext context; // first: the filter's pointer to it is a pointer to the query
@@ -100,8 +117,8 @@ struct Scene::Parts {
   void measure_sections();
   double ground_distance(const SceneRay& ray) const;
   RTCRay single_ray(const SceneRay& ray) const;
-  Hit hit_of(const SceneRay& ray, const Candidate& candidate) const;
-  void add_normals(Hit& hit, const VisibleSurface& surface, const std::array<double, 3>& barycentric) const;
+  Crossing crossing_of(const SceneRay& ray, const Candidate& candidate) const;
+  Hit hit_of(const Crossing& crossing) const;
 };
 
 Scene::Scene(const Root& root, const Pieces& pieces, const SceneOptions& options) {
@@ -232,6 +249,7 @@ RTCRay Scene::Parts::single_ray(const SceneRay& ray) const {
 
 Hit Scene::nearest(const SceneRay& ray) const {
   const Parts& parts = *parts_;
+  if (!ray.origin.allFinite() || !ray.direction.allFinite()) return {};
   // A distant eye is moved up to the pieces first: single precision is spent on them alone.
   const double skipped = std::max(0.0, (parts.center - ray.origin).norm() - 2 * parts.bounds.diagonal());
   const SceneRay close{ray.origin + skipped * ray.direction, ray.direction, ray.to - skipped};
@@ -243,38 +261,34 @@ Hit Scene::nearest(const SceneRay& ray) const {
   single.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   if (close.to > 0) rtcIntersect1(parts.scene, &query.context, &single);
 
-  std::array<Hit, 16> hits;
+  // The nearest in double; among those at the same place the lowest.
+  std::array<Crossing, 16> crossing;
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < query.count; ++i) {
-    hits[i] = parts.hit_of(ray, query.candidate[i]);
-    least = std::min(least, hits[i].distance);
+    crossing[i] = parts.crossing_of(ray, query.candidate[i]);
+    least = std::min(least, crossing[i].distance);
   }
-  Hit best;
-  for (int i = 0; i < query.count; ++i) {
-    const Hit& hit = hits[i];
-    if (hit.distance > least + parts.tie + 1e-14 * std::abs(least)) continue;
-    if (std::tie(hit.piece, hit.triangle) < std::tie(best.piece, best.triangle)) best = hit;
-  }
+  const double reach = least + parts.tie + 1e-14 * std::abs(least);
+  const Crossing* best = nullptr;
+  for (int i = 0; i < query.count; ++i)
+    if (const Crossing& c = crossing[i]; c.distance <= reach)
+      if (!best || std::tie(c.surface, c.triangle) < std::tie(best->surface, best->triangle)) best = &c;
+  Hit hit;
   const double ground = parts.ground_distance(ray);
-  if (ground <= ray.to && ground < best.distance) {
-    best = Hit{};
-    best.piece = Hit::ground;
-    best.distance = ground;
-    best.position = best.rest = ray.origin + ground * ray.direction;
-    best.normal = best.smooth = parts.options.up;
-    best.lifted = best.position + parts.clearance * best.normal;
-  } else if (best.exists()) {
-    const VisibleSurface& surface = parts.surface[best.piece];
-    const auto& corner = surface.triangle[best.triangle].corner;
-    const NearestFacet closest = closest_point(
-        {surface.position[corner[0]], surface.position[corner[1]], surface.position[corner[2]]}, best.rest);
-    parts.add_normals(best, surface, closest.barycentric);
+  if (std::isfinite(ground) && ground <= ray.to && (!best || ground < best->distance)) {
+    hit.piece = Hit::ground;
+    hit.distance = ground;
+    hit.position = hit.rest = ray.origin + ground * ray.direction;
+    hit.normal = hit.smooth = parts.options.up;
+    hit.lifted = hit.position + parts.clearance * hit.normal;
+  } else if (best) {
+    hit = parts.hit_of(*best);
   }
-  return best;
+  return hit;
 }
 
 /// Möller–Trumbore in double, in rest space: the rest point does not suffer from the placement.
-Hit Scene::Parts::hit_of(const SceneRay& ray, const Candidate& candidate) const {
+Crossing Scene::Parts::crossing_of(const SceneRay& ray, const Candidate& candidate) const {
   const VisibleSurface& from = surface[candidate.surface];
   const auto& triangle = from.triangle[candidate.triangle];
   const Vec3d origin = from.placement.inverse(ray.origin);
@@ -284,63 +298,74 @@ Hit Scene::Parts::hit_of(const SceneRay& ray, const Candidate& candidate) const 
   const Vec3d p = direction.cross(ac);
   const double determinant = ab.dot(p);
   double u = candidate.u, v = candidate.v;
-  if (std::abs(determinant) > 1e-9 * ab.norm() * ac.norm()) {
+  if (determinant * determinant > 1e-18 * ab.squaredNorm() * ac.squaredNorm()) {
     const Vec3d s = origin - a, q = s.cross(ab);
     u = s.dot(p) / determinant;
     v = direction.dot(q) / determinant;
   }
-  // Single precision may have found it a hair outside.
-  u = std::clamp(u, 0.0, 1.0);
-  v = std::clamp(v, 0.0, 1.0);
-  if (const double over = u + v; over > 1) {
-    u /= over;
-    v /= over;
-  }
-  Hit hit;
-  hit.piece = from.piece;
-  hit.triangle = candidate.triangle;
-  hit.rest = a + u * ab + v * ac;
-  hit.position = from.placement(hit.rest);
-  hit.distance = (hit.rest - origin).dot(direction);
-  hit.tag = triangle.tag;
-  hit.root = triangle.root;
-  return hit;
+  clamp_to_triangle(u, v); // single precision may have found it a hair outside
+  const Vec3d rest = a + u * ab + v * ac;
+  return {candidate.surface, candidate.triangle, (rest - origin).dot(direction), u, v, rest};
 }
 
 /// Geometric and smooth normals, and the start of secondary rays after Hanika, "Hacking the Shadow Terminator", Ray
 /// Tracing Gems II, ch. 4, 2021: the point is lifted to the surface that the corner normals suggest.
-void Scene::Parts::add_normals(Hit& hit, const VisibleSurface& from, const std::array<double, 3>& barycentric) const {
-  const auto& triangle = from.triangle[hit.triangle];
-  std::array<Vec3d, 3> corner, normal;
-  for (int i = 0; i < 3; ++i) corner[i] = from.position[triangle.corner[i]];
-  std::array<double, 3> weight = barycentric;
-  Vec3d area = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+Hit Scene::Parts::hit_of(const Crossing& crossing) const {
+  const VisibleSurface& from = surface[crossing.surface];
+  const auto& triangle = from.triangle[crossing.triangle];
+  Hit hit;
+  hit.piece = from.piece;
+  hit.triangle = crossing.triangle;
+  hit.distance = crossing.distance;
+  hit.rest = crossing.rest;
+  hit.position = from.placement(hit.rest);
+  hit.tag = triangle.tag;
+  hit.root = triangle.root;
+
+  // The skin's normals belong to the root's facets, so that cuts do not change them.
+  std::array<Vec3d, 3> corner;
+  const std::array<Vec3f, 3>* skin = nullptr;
   if (hit.tag.is_skin()) {
-    const FacetId facet = hit.tag.facet();
     const Model& model = root->model();
-    for (int i = 0; i < 3; ++i) {
-      corner[i] = model.mesh.position[model.boundary.corner[facet][i]];
-      normal[i] = skin_normal[facet][i].cast<double>();
-    }
-    weight = closest_point(corner, hit.rest).barycentric;
-    area = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+    const auto& facet = model.boundary.corner[hit.tag.facet()];
+    for (int i = 0; i < 3; ++i) corner[i] = model.mesh.position[facet[i]];
+    skin = &skin_normal[hit.tag.facet()];
   } else {
-    for (int i = 0; i < 3; ++i) normal[i] = from.normal[from.normal_row[hit.triangle][i]].cast<double>();
+    for (int i = 0; i < 3; ++i) corner[i] = from.position[triangle.corner[i]];
   }
-  Vec3d smooth = weight[0] * normal[0] + weight[1] * normal[1] + weight[2] * normal[2];
-  const double length = smooth.norm();
-  Vec3d geometric = area.normalized();
-  if (!geometric.allFinite()) geometric = length > 0 ? Vec3d(smooth / length) : Vec3d::UnitY();
+  const Vec3d ab = corner[1] - corner[0], ac = corner[2] - corner[0], area = ab.cross(ac);
+  double u = crossing.u, v = crossing.v;
+  if (skin && area.squaredNorm() > 0) {
+    const Vec3d s = hit.rest - corner[0];
+    u = s.cross(ac).dot(area) / area.squaredNorm();
+    v = ab.cross(s).dot(area) / area.squaredNorm();
+    clamp_to_triangle(u, v);
+  }
+  const std::array<double, 3> weight = {1 - u - v, u, v};
+  Vec3d smooth = Vec3d::Zero(), lift = Vec3d::Zero();
+  for (int i = 0; i < 3; ++i) {
+    const Vec3f& single = skin ? (*skin)[i] : from.normal[from.normal_row[crossing.triangle][i]];
+    const Vec3d normal = single.cast<double>();
+    smooth += weight[i] * normal;
+    lift -= weight[i] * std::min(0.0, (hit.rest - corner[i]).dot(normal)) * normal;
+  }
+  const double length = smooth.norm(), size = area.norm();
+  Vec3d geometric = Vec3d::UnitY();
+  if (size > 0) {
+    geometric = area / size;
+  } else if (length > 0) {
+    geometric = smooth / length;
+  }
   smooth = length > 1e-6 ? Vec3d(smooth / length) : geometric;
-  Vec3d lift = Vec3d::Zero();
-  for (int i = 0; i < 3; ++i) lift -= weight[i] * std::min(0.0, (hit.rest - corner[i]).dot(normal[i])) * normal[i];
   hit.normal = from.placement.rotation * geometric;
   hit.smooth = from.placement.rotation * smooth;
   hit.lifted = from.placement(hit.rest + lift) + clearance * hit.normal;
+  return hit;
 }
 
 bool Scene::occluded(const SceneRay& ray) const {
   const Parts& parts = *parts_;
+  if (!ray.origin.allFinite() || !ray.direction.allFinite()) return false;
   if (parts.ground_distance(ray) < ray.to) return true;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
