@@ -39,6 +39,15 @@ TEST(AtomicFile, LeavesNothingBehindAfterAnException) {
   EXPECT_EQ(folder.file_count(), 0u);
 }
 
+TEST(AtomicFile, HasNoNameBeforeItIsAskedForOne) {
+  const Folder folder;
+  AtomicFile file(folder / "result.bin");
+  file.write("half of it");
+  EXPECT_EQ(folder.file_count(), 0u) << "a killed process would leave this behind";
+  EXPECT_EQ(file_content(file.beside()), "half of it");
+  EXPECT_EQ(folder.file_count(), 1u);
+}
+
 TEST(AtomicFile, TwoWritersOfOnePathDoNotMix) {
   const Folder folder;
   AtomicFile one(folder / "x"), two(folder / "x");

@@ -29,21 +29,46 @@ AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)) {
   }
   if (path_.filename().empty()) throw IoFailure(path_.string(), "names no file");
 
+  const std::filesystem::path folder = path_.has_parent_path() ? path_.parent_path() : ".";
+#ifdef O_TMPFILE
+  if (::access("/proc/self/fd", X_OK) == 0)
+    descriptor_ = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  if (descriptor_ >= 0) return;
+#endif
+  make_beside([&] {
+    descriptor_ = ::open(beside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    return descriptor_ >= 0;
+  });
+}
+
+/// Tries names until `make` succeeds with the one in beside_.
+template <class Make>
+void AtomicFile::make_beside(const Make& make) {
   for (int i = 0; i < attempts; ++i) {
     const std::string name =
         "." + path_.stem().string() + "." + std::to_string(::getpid()) + "-" + std::to_string(i) + ".part";
     beside_ = path_.parent_path() / (name + path_.extension().string());
-    descriptor_ = ::open(beside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor_ >= 0) return;
+    if (make()) return;
     if (errno != EEXIST) break;
   }
-  throw IoFailure(path_.string(), std::string("cannot be written: ") + std::strerror(errno));
+  const int reason = errno;
+  beside_.clear();
+  throw IoFailure(path_.string(), std::string("cannot be written: ") + std::strerror(reason));
+}
+
+const std::filesystem::path& AtomicFile::beside() {
+  if (beside_.empty()) {
+    const std::string unnamed = "/proc/self/fd/" + std::to_string(descriptor_);
+    make_beside(
+        [&] { return ::linkat(AT_FDCWD, unnamed.c_str(), AT_FDCWD, beside_.c_str(), AT_SYMLINK_FOLLOW) == 0; });
+  }
+  return beside_;
 }
 
 AtomicFile::~AtomicFile() {
   if (descriptor_ < 0) return;
   ::close(descriptor_);
-  ::unlink(beside_.c_str());
+  if (!beside_.empty()) ::unlink(beside_.c_str());
 }
 
 void AtomicFile::write(const void* data, std::size_t bytes) {
@@ -60,6 +85,7 @@ void AtomicFile::write(const void* data, std::size_t bytes) {
 }
 
 void AtomicFile::commit() {
+  beside();
   const int closed = ::close(descriptor_);
   const int reason = errno;
   descriptor_ = -1;

@@ -21,13 +21,17 @@ public:
   void write(const void* data, std::size_t bytes);
   void write(std::string_view bytes) { write(bytes.data(), bytes.size()); }
 
-  /// The file beside, with the extension of the final one: for libraries that write a path by themselves.
-  const std::filesystem::path& beside() const { return beside_; }
+  /// Gives the file a hidden name beside the final one, with the same extension: for libraries that write a path by
+  /// themselves.
+  const std::filesystem::path& beside();
   /// Call once, when everything has been written.
   void commit();
 
 private:
-  std::filesystem::path path_, beside_;
+  template <class Make>
+  void make_beside(const Make& make);
+
+  std::filesystem::path path_, beside_; // beside_ is empty while the file has no name
   int descriptor_ = -1;
 };
 
