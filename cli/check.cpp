@@ -118,9 +118,10 @@ void check_model(const CheckOptions& options, const Session& session) {
                      "coverage {:.4f})",
                      survey.points, survey.worst.x(), survey.worst.y(), survey.worst.z(), survey.least_coverage),
          survey.holes, "make the model again with a higher fill/coverage_order or a larger mask/radius"});
-  session.say(fmt::format("  {} random points: {} holes, least coverage {:.4f}; look-ups read per point: median {}, "
+  session.say(fmt::format("  {} random points: {} holes, {} thin (by more than 1/255), least coverage {:.4f}; "
+                          "look-ups read per point: median {}, "
                           "p99 {}, most {}",
-                          survey.points, survey.holes, survey.least_coverage, survey.median_lookups,
+                          survey.points, survey.holes, survey.thin, survey.least_coverage, survey.median_lookups,
                           survey.p99_lookups, survey.most_lookups));
   session.say(fmt::format("  volume of the pieces {:.9g} mm³, of the root {:.9g} mm³", volume, root_volume));
   say(findings, session);
@@ -133,6 +134,7 @@ void check_model(const CheckOptions& options, const Session& session) {
                  {"root_volume", root_volume},
                  {"points", survey.points},
                  {"holes", survey.holes},
+                 {"thin", survey.thin},
                  {"least_coverage", survey.least_coverage},
                  {"median_lookups_read", survey.median_lookups},
                  {"p99_lookups_read", survey.p99_lookups},

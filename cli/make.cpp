@@ -23,6 +23,17 @@ Json stage_list(const std::vector<StageReport>& stages) {
   return list;
 }
 
+Json fill_list(const std::vector<FillReport>& fills) {
+  Json list = Json::array();
+  for (const FillReport& fill : fills)
+    list.push_back({{"solid", fill.solid},
+                    {"pastes", fill.statistics.pastes},
+                    {"rounds", fill.statistics.rounds},
+                    {"lookups", fill.statistics.lookups},
+                    {"median_share_used", fill.statistics.median_share_used}});
+  return list;
+}
+
 void run(const MakeOptions& options, const Session& session) {
   const auto start = std::chrono::steady_clock::now();
   check_output(options.output, {"pith"});
@@ -54,6 +65,7 @@ void run(const MakeOptions& options, const Session& session) {
                  {"name", recipe.name},
                  {"seconds", seconds},
                  {"stages", stage_list(result.stages)},
+                 {"fills", fill_list(result.fills)},
                  {"peak_memory_bytes", peak_memory_bytes()},
                  {"helper_peak_memory_bytes", helper_peak_memory_bytes()},
                  {"vertices", result.model.mesh.vertex_count()},

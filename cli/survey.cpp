@@ -8,7 +8,7 @@
 namespace pith::cli {
 namespace {
 
-constexpr double covered = 254.5 / 255.0;
+constexpr double seen = 0.98, covered = 254.0 / 255.0;
 constexpr std::uint64_t stage = 0x73757276; // "surv"
 
 /// Uniform in a tet: the gaps between three sorted uniform numbers.
@@ -54,7 +54,8 @@ Survey survey_of(const Root& root, std::size_t points, std::uint64_t seed, const
   std::vector<std::uint16_t> lookups;
   for (const Answer& one : answer) {
     lookups.push_back(one.lookups);
-    if (one.coverage < covered) ++survey.holes;
+    if (one.coverage < seen) ++survey.holes;
+    if (one.coverage < covered) ++survey.thin;
     if (one.coverage < survey.least_coverage) survey.least_coverage = one.coverage, survey.worst = one.position;
   }
   std::sort(lookups.begin(), lookups.end());

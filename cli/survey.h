@@ -9,7 +9,8 @@ namespace pith::cli {
 
 struct Survey {
   std::size_t points = 0;
-  std::size_t holes = 0; ///< points whose accumulated coverage is below 254.5 / 255
+  std::size_t holes = 0; ///< points that more than 2 % shines through: visible
+  std::size_t thin = 0;  ///< points that more than 1/255 shines through, holes included
   double least_coverage = 1;
   Vec3d worst = Vec3d::Zero();                                  ///< where that is, rest space
   double median_lookups = 0, p99_lookups = 0, most_lookups = 0; ///< exemplar reads that a point took

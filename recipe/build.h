@@ -34,10 +34,16 @@ struct StageReport {
   bool cached = false; ///< not computed in this build: found, or not needed because what follows was found
 };
 
+struct FillReport {
+  std::size_t solid = 0; ///< entry of the recipe's solids
+  LapStatistics statistics;
+};
+
 struct BuildResult {
   Model model;
   Pieces pieces;
   std::vector<StageReport> stages; ///< in the order of the chain
+  std::vector<FillReport> fills;   ///< one per lapped solid
   std::string note;                ///< what the user should know (a fall-back taken); empty otherwise
 
   std::map<std::string, std::string> keys() const; ///< stage → key, as a .pith file stores them

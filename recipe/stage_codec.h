@@ -3,6 +3,7 @@
 #include "recipe/archive.h"
 #include "volume/cut/piece.h"
 #include "volume/field/frames.h"
+#include "volume/lap/lap.h"
 #include "volume/layer/layer.h"
 #include "volume/mesh/tetrahedralize.h"
 
@@ -131,6 +132,23 @@ void transfer(Archive& archive, Item& layer) {
   transfer_list(archive, layer.begin);
   transfer_list(archive, layer.simplex);
   transfer_list(archive, layer.lookup);
+}
+
+template <class Archive, class Item>
+requires MaybeConst<Item, LapStatistics>
+void transfer(Archive& archive, Item& statistics) {
+  transfer(archive, statistics.pastes);
+  transfer(archive, statistics.rounds);
+  transfer(archive, statistics.lookups);
+  transfer(archive, statistics.warp_iterations);
+  transfer(archive, statistics.median_share_used);
+}
+
+template <class Archive, class Item>
+requires MaybeConst<Item, LapResult>
+void transfer(Archive& archive, Item& result) {
+  transfer(archive, result.layer);
+  transfer(archive, result.statistics);
 }
 
 template <class Archive, class Item>

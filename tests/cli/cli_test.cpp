@@ -209,8 +209,9 @@ TEST_F(CliEnd, KillLeavesNoBrokenOutputAndAUsableCache) {
     std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
     ::kill(process.id, SIGKILL);
     program.finish(process);
-    if (std::filesystem::exists(program.folder / "killed.pith"))
+    if (std::filesystem::exists(program.folder / "killed.pith")) {
       EXPECT_TRUE(bytes("killed.pith") == whole) << milliseconds;
+    }
     run({"make", "ball.json", "-o", "after.pith"}); // on what the killed one left in the cache
     EXPECT_TRUE(bytes("after.pith") == whole) << milliseconds;
   }

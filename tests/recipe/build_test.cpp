@@ -29,7 +29,11 @@ protected:
                           "ball.json");
   }
 
-  BuildOptions with_disk() const { return {.cache = folder / "cache"}; }
+  BuildOptions with_disk() const {
+    BuildOptions options;
+    options.cache = folder / "cache";
+    return options;
+  }
   BuildOptions in_memory() const { return {}; }
 
   static std::set<std::string> done_again(const BuildResult& result) {
@@ -235,7 +239,7 @@ TEST_F(Build, WhatDoesNotFitItsInputsIsRefusedByPlace) {
   EXPECT_EQ(message(broken).find("ball.json: /solids/0/region: is 4; the surface encloses 1 region"), 0u)
       << message(broken);
   broken = recipe;
-  broken.solids[0].exemplar = {.file = "gone.exemplar"};
+  broken.solids[0].exemplar.file = "gone.exemplar";
   EXPECT_EQ(message(broken).find("ball.json: /solids/0/exemplar/file: \"gone.exemplar\" does not exist"), 0u)
       << message(broken);
   broken = recipe;
