@@ -134,15 +134,16 @@ demo() {
   mkdir -p "$out"
   step "making the kiwi"
   "$pith" make data/recipes/kiwi.json -o "$out/kiwi.pith"
-  step "cutting it: across and along its axis, one half each; and into two halves that lie side by side"
+  step "cutting it across and along its axis, one half each; and a recipe that cuts it and lays both halves down"
   "$pith" cut "$out/kiwi.pith" --stroke data/strokes/kiwi-across.json --keep left -o "$out/kiwi-across.pith"
   "$pith" cut "$out/kiwi.pith" --stroke data/strokes/kiwi-along.json --keep left -o "$out/kiwi-along.pith"
-  "$pith" cut "$out/kiwi.pith" --stroke data/strokes/kiwi-across.json --spread 14 -o "$out/kiwi-halves.pith"
+  "$pith" make data/recipes/kiwi-halves.json -o "$out/kiwi-halves.pith"
   step "rendering"
   local name
-  for name in kiwi kiwi-across kiwi-along kiwi-halves; do
-    "$pith" render "$out/$name.pith" -o "$out/$name.png" --size 800x600 --spp 64
+  for name in kiwi kiwi-across kiwi-along; do
+    "$pith" render "$out/$name.pith" -o "$out/$name.png" --size 800x600 --spp 48
   done
+  "$pith" render "$out/kiwi-halves.pith" -o "$out/kiwi-halves.png" --size 960x640 --spp 96 --direction 0.25,0.75,1.2
   echo
   echo "The model:    $PWD/$out/kiwi.pith   (its pieces: kiwi-across.pith, kiwi-along.pith, kiwi-halves.pith beside it)"
   echo "The pictures: $PWD/$out/kiwi.png          the whole fruit"
