@@ -4,27 +4,50 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <numbers>
 
 namespace pith {
 
 namespace {
 
-/// Towards the largest section, turned aside and raised a little, so that skin and section are both seen.
+/// The section area that is seen from far away in a direction; facing it by more than 0.85 gains nothing, because a
+/// little of the skin should be seen too.
+double seen_section(const Scene& scene, const Vec3d& direction) {
+  const double clearance = 1e-4 * scene.bounds().diagonal();
+  double seen = 0;
+  for (const Scene::SectionSample& sample : scene.section_samples()) {
+    const double area = sample.area.norm(), facing = sample.area.dot(direction);
+    if (!(facing > 0) || scene.occluded({sample.position + clearance / area * sample.area, direction})) continue;
+    seen += std::min(facing, 0.85 * area);
+  }
+  return seen;
+}
+
+/// From the front, or where most of the sections is seen, and always from a little above.
 Vec3d chosen_direction(const Scene& scene) {
   const Vec3d up = scene.options().up;
   const Vec3d aside = std::abs(up.x()) < 0.9 ? Vec3d::UnitX() : Vec3d::UnitZ();
-  const Vec3d front = aside.cross(up).normalized();
-  const Vec3d section = scene.section_direction();
-  Vec3d level = front;
-  double rise = 0.45;
-  if (section.norm() > 0 && section.dot(up) > -0.5 * section.norm()) {
-    const Vec3d normal = section.normalized();
-    const Vec3d flat = normal - normal.dot(up) * up;
-    if (flat.norm() > 0.2) level = flat.normalized();
-    rise = std::max(rise, 1.2 * normal.dot(up)); // sections that face upwards are looked down upon
+  const Vec3d front = aside.cross(up).normalized(), right = up.cross(front);
+  constexpr int turns = 24;
+  constexpr double rises[3][2] = {{0.42, 1.0}, {0.72, 0.96}, {1.05, 0.9}}; // elevation in radians, preference
+  constexpr double start = 0.4;                                            // radians to the right of the front
+  Vec3d best =
+      std::cos(rises[0][0]) * (std::cos(start) * front + std::sin(start) * right) + std::sin(rises[0][0]) * up;
+  double most = 0;
+  for (int turn = 0; turn < turns; ++turn) {
+    // 0, 1, −1, 2, −2 ...: near-equals go to the one closest to the front.
+    const double angle = start + (turn % 2 ? 1 : -1) * ((turn + 1) / 2) * 2 * std::numbers::pi / turns;
+    for (const auto& [rise, preference] : rises) {
+      const Vec3d level = std::cos(angle) * front + std::sin(angle) * right;
+      const Vec3d direction = std::cos(rise) * level + std::sin(rise) * up;
+      const double seen = preference * seen_section(scene, direction);
+      if (seen > 1.01 * most) {
+        most = seen;
+        best = direction;
+      }
+    }
   }
-  const Vec3d right = up.cross(level);
-  return level + 0.42 * right + rise * up;
+  return best;
 }
 
 } // namespace

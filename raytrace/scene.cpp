@@ -102,7 +102,7 @@ struct Scene::Parts {
   double clearance = 0; ///< mm: from a surface to where rays that leave it start
   std::size_t triangles = 0;
   std::vector<Vec3d> points;
-  Vec3d section_direction = Vec3d::Zero();
+  std::vector<SectionSample> section_samples;
   double section_area = 0;
   int color = -1, roughness = -1;
 
@@ -172,17 +172,22 @@ Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 
 void Scene::Parts::measure_sections() {
-  for (const VisibleSurface& s : surface) {
-    Vec3d sum = Vec3d::Zero();
+  std::vector<SectionSample> all;
+  for (const VisibleSurface& s : surface)
     for (const auto& t : s.triangle) {
       if (!t.tag.is_section()) continue;
-      const Vec3d& a = s.position[t.corner[0]];
-      const Vec3d area = 0.5 * (s.position[t.corner[1]] - a).cross(s.position[t.corner[2]] - a);
-      sum += area;
+      const Vec3d &a = s.position[t.corner[0]], &b = s.position[t.corner[1]], &c = s.position[t.corner[2]];
+      const Vec3d area = 0.5 * (b - a).cross(c - a);
       section_area += area.norm();
+      all.push_back({s.placement((a + b + c) / 3), s.placement.rotation * area});
     }
-    sum = s.placement.rotation * sum;
-    if (sum.norm() > 1.001 * section_direction.norm()) section_direction = sum;
+  // Runs of triangles are taken together at the place of their middle one.
+  const std::size_t run = 1 + all.size() / 1000;
+  for (std::size_t i = 0; i < all.size(); i += run) {
+    const std::size_t end = std::min(all.size(), i + run);
+    SectionSample sample{all[(i + end) / 2].position, Vec3d::Zero()};
+    for (std::size_t j = i; j < end; ++j) sample.area += all[j].area;
+    section_samples.push_back(sample);
   }
 }
 
@@ -407,7 +412,7 @@ const Box& Scene::bounds() const { return parts_->bounds; }
 double Scene::ground_height() const { return parts_->ground_height; }
 std::size_t Scene::triangle_count() const { return parts_->triangles; }
 const std::vector<Vec3d>& Scene::points() const { return parts_->points; }
-const Vec3d& Scene::section_direction() const { return parts_->section_direction; }
+const std::vector<Scene::SectionSample>& Scene::section_samples() const { return parts_->section_samples; }
 double Scene::section_area() const { return parts_->section_area; }
 
 } // namespace pith

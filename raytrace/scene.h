@@ -90,10 +90,14 @@ public:
   std::size_t triangle_count() const; ///< triangles that rays can meet
   /// Corners of every triangle that rays can meet, placed: to frame a view. World.
   const std::vector<Vec3d>& points() const;
-  /// The largest Σ area · outward normal over the sections of one piece, world, mm²; zero where nothing is cut. And
-  /// the area of all sections together.
-  const Vec3d& section_direction() const;
+  /// Area of all sections that can be met, mm².
   double section_area() const;
+  /// Places on the sections, at most about a thousand, each standing for `area` (mm², along its outward normal);
+  /// world.
+  struct SectionSample {
+    Vec3d position, area;
+  };
+  const std::vector<SectionSample>& section_samples() const;
 
 private:
   struct Parts;

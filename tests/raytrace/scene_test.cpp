@@ -205,6 +205,26 @@ TEST(Framing, EveryPointIsInsideAndTheFrameIsFull) {
       }
 }
 
+/// The chosen view sees the section of a half, however it lies, and the larger free section of two.
+TEST(Framing, LooksAtTheSections) {
+  const Root root = root_of(tet_ball(8, 20), Vec3d(0.5, 0.5, 0.5));
+  SceneOptions options = matte();
+  options.ground.on = true;
+  for (const Vec3d& normal : {Vec3d(0, 0, 1), Vec3d(0, 0, -1), Vec3d(1, 0, 0.2), Vec3d(0.3, 1, 0)}) {
+    Pieces pieces = whole_piece(root.model().mesh);
+    cut(pieces, root.model().mesh, root.model().boundary, *level_set_of(PlaneCut{normal, 1}));
+    keep_pieces(pieces, root.model().mesh, std::vector<std::uint32_t>{0}); // left: the section faces along the normal
+    const View view = framed_view(Scene(root, pieces, options));
+    EXPECT_GT(-view.forward().dot(normal.normalized()), 0.6) << normal.transpose();
+    EXPECT_LT(view.forward().y(), -0.3);
+  }
+  Pieces pieces = whole_piece(root.model().mesh);
+  cut(pieces, root.model().mesh, root.model().boundary, *level_set_of(PlaneCut{{0, 0, 1}, 0}));
+  pieces.piece[0].placement.translation = {60, 0, 0};
+  // Piece 1's section looks towards −z, piece 0's towards +z, each past the other.
+  EXPECT_GT(std::abs(framed_view(Scene(root, pieces, options)).forward().z()), 0.6);
+}
+
 TEST(Scene, RefusesWhatItCannotShow) {
   const Root root = root_of(tet_grid(1, 1, 1), Vec3d(0.5, 0.5, 0.5));
   const Pieces pieces = whole_piece(root.model().mesh);
