@@ -122,10 +122,14 @@ ExemplarSource exemplar_from(const JsonNode& node) {
 }
 
 void read_mask(const JsonNode& node, SplotchOptions& mask) {
-  node.object({"resolution", "radius", "radius_along", "drop_off", "irregularity", "seed"});
+  node.object({"resolution", "radius", "radius_outer", "radius_along", "reach_outer", "reach_inner", "drop_off",
+               "irregularity", "seed"});
   node.optional_whole("resolution", mask.resolution, 4, 256, "give texels along each axis");
-  node.optional_number("radius", mask.radius, {0, 0.5, true, "above 0, to 0.5", "give texture widths"});
-  node.optional_number("radius_along", mask.radius_along, {0, 0.5, true, "above 0, to 0.5", "give texture widths"});
+  for (auto [key, width] : {std::pair("radius", &mask.radius), std::pair("radius_outer", &mask.radius_outer)})
+    node.optional_number(key, *width, {0, 4, true, "above 0, to 4", "give texture widths"});
+  for (auto [key, width] : {std::pair("radius_along", &mask.radius_along),
+                            std::pair("reach_outer", &mask.reach_outer), std::pair("reach_inner", &mask.reach_inner)})
+    node.optional_number(key, *width, {0, 1, true, "above 0, to 1", "give parts of the depth"});
   node.optional_number("drop_off", mask.drop_off, {0, 0.5, true, "above 0, to 0.5", "give texture widths"});
   node.optional_number("irregularity", mask.irregularity, {0, 0.25, false, "0 to 0.25", "give texture widths"});
   node.optional_seed("seed", mask.seed);

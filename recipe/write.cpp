@@ -65,7 +65,10 @@ json json_from(const SplotchOptions& mask) {
   json result = json::object();
   put(result, "resolution", mask.resolution, usual.resolution);
   put(result, "radius", mask.radius, usual.radius);
+  put(result, "radius_outer", mask.radius_outer, usual.radius_outer);
   put(result, "radius_along", mask.radius_along, usual.radius_along);
+  put(result, "reach_outer", mask.reach_outer, usual.reach_outer);
+  put(result, "reach_inner", mask.reach_inner, usual.reach_inner);
   put(result, "drop_off", mask.drop_off, usual.drop_off);
   put(result, "irregularity", mask.irregularity, usual.irregularity);
   put(result, "seed", mask.seed, usual.seed);

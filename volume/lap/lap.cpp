@@ -167,7 +167,7 @@ private:
     if (!field_.depth.empty()) {
       pin[1] = 0; // (½, d_seed, ½), §5.2.7
       for (int i = 0; i < 4; ++i) pin[1] += at[i] * field_.depth[mesh_.corner[4 * std::size_t(seed) + i]];
-      part = pin[1] < 0.2 ? 0 : pin[1] > 0.8 ? 2 : 1;
+      part = pin[1] < 0.2 ? 0 : pin[1] > 0.83 ? 2 : 1;
     }
     GrowField field = field_;
     field.extent.fill(splotch_extent(options_.splotch, parts_of(options_.type)[part]));

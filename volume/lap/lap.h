@@ -34,7 +34,7 @@ struct LapOptions {
   std::uint64_t seed = 1;
   SplotchOptions splotch;
   int mask_variants = 3;        ///< splotches of different outline for each part
-  double frame_tolerance = 2.0; ///< largest angle between a tet's axes and the seed's, radians (§5.2.4)
+  double frame_tolerance = 0.8; ///< largest angle between a tet's axes and the seed's, radians (§5.2.4)
   double sample_spacing = 0.03; ///< of the coverage test, in texture widths
   int coverage_order = 8;       ///< most samples per tet edge in that test: order 8 gives the paper's 165 points
   bool align = true;     ///< choose each paste's phase so that it continues what is already there; false: at random

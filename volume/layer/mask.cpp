@@ -43,8 +43,8 @@ double splotch_extent(const SplotchOptions& o, SplotchPart part) {
 
 Mask splotch_mask(const SplotchOptions& o, SplotchPart part) {
   if (o.axes < 2 || o.axes > 3 || o.resolution < 4 || o.resolution > 256 || !(o.radius > 0) ||
-      !(o.radius_outer > 0) || !(o.radius_along > 0) || !(o.radius_end > 0) || !(o.drop_off > 0) ||
-      !(o.irregularity >= 0))
+      !(o.radius_outer > 0) || !(o.radius_along > 0) || !(o.reach_outer > 0) || !(o.reach_inner > 0) ||
+      !(o.drop_off > 0) || !(o.irregularity >= 0))
     throw InvalidInput("mask", "has a size that is not positive or a resolution outside 4 to 256",
                        "give 2 or 3 axes, a positive radius and drop-off, and an irregularity of at least 0");
   Mask mask;
@@ -55,7 +55,9 @@ Mask splotch_mask(const SplotchOptions& o, SplotchPart part) {
   const double extent = splotch_extent(o, part), across = part == SplotchPart::outer ? o.radius_outer : o.radius;
   Vec3d center(0, 0, 0), radius(across, across, across);
   if (varies) {
-    radius[o.variation_axis] = part == SplotchPart::middle ? o.radius_along : o.radius_end;
+    radius[o.variation_axis] = part == SplotchPart::middle  ? o.radius_along
+                               : part == SplotchPart::outer ? o.reach_outer
+                                                            : o.reach_inner;
     center[o.variation_axis] = part == SplotchPart::outer ? 0 : part == SplotchPart::inner ? 1 : 0.5;
     mask.open[o.variation_axis] = part != SplotchPart::middle;
   }

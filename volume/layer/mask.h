@@ -60,10 +60,11 @@ enum class SplotchPart { whole, outer, middle, inner };
 struct SplotchOptions {
   int axes = 3;
   int resolution = 40;        ///< texels along each axis
-  double radius = 0.45;       ///< of the splotch across the axis of variation, in texture widths
+  double radius = 0.40;       ///< of the splotch across the axis of variation, in texture widths
   double radius_outer = 0.7;  ///< the same for the outer part, whose layers bend least
-  double radius_along = 0.42; ///< half its extent along the axis of variation (middle only)
-  double radius_end = 0.36;   ///< the same for outer and inner, measured from their end
+  double radius_along = 0.46; ///< half the middle part's extent along the axis of variation
+  double reach_outer = 0.36;  ///< how far the outer part reaches from the low end of that axis
+  double reach_inner = 0.28;  ///< how far the inner part reaches from its high end
   double drop_off = 0.09;     ///< width of the alpha ramp, in texture widths (paper: 0.05–0.10)
   double irregularity = 0.06; ///< amplitude of the border's waviness, in texture widths
   int variation_axis = 1;     ///< the axis along which outer/middle/inner differ (depth)
