@@ -49,7 +49,9 @@ Measured rate(const Settings& settings, const Root& root, const std::vector<Mate
   const ThreadLimit one(1);
   double reads = 0, coverage = 0;
   const int times = settings.times(5);
+  std::vector<double> computed;
   const double seconds = median_seconds(times, {}, [&] {
+    const double begin = thread_seconds();
     reads = coverage = 0;
     for (const MaterialPoint& point : points) {
       const Material material = material_at(root, point);
@@ -57,10 +59,12 @@ Measured rate(const Settings& settings, const Root& root, const std::vector<Mate
       coverage += material.coverage;
     }
     keep(coverage);
+    computed.push_back(thread_seconds() - begin);
   });
   const double n = static_cast<double>(points.size());
-  return {n / seconds, fmt::format("{} tets, {} points, {:.2f} exemplar reads each{}", root.model().mesh.tet_count(),
-                                   points.size(), reads / n, note)};
+  return {n / seconds,
+          fmt::format("{} tets, {} points, {:.2f} exemplar reads each{}; by CPU time {:.3g}/s",
+                      root.model().mesh.tet_count(), points.size(), reads / n, note, n / median(computed))};
 }
 
 Measured random_row(const Settings& settings) {
