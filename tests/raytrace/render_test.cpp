@@ -1,6 +1,7 @@
 #include "raytrace/render.h"
 
 #include "raytrace/framing.h"
+#include "raytrace/sampling.h"
 #include "raytrace/tone.h"
 #include "tests/raytrace/scenes.h"
 #include "volume/base/error.h"
@@ -271,34 +272,38 @@ TEST_F(Pictures, HaveNoBadPixel) {
   }
 }
 
-/// Neither facets nor the cut's small triangles may show as dark specks: in light from one side only, the lit half of
-/// a ball changes slowly from pixel to pixel.
+/// Facets may not show in the shadow's edge: in light from one side, a coarse ball looks like a round one.
 TEST_F(Pictures, ShowNoShadowTerminatorOfFacets) {
   Lights lights = constant_sky(0);
   AreaLight light;
-  light.center = {-100, 0, 0};
-  light.edge_u = {0, 0, -1}, light.edge_v = {0, 1, 0}; // −z × y = x
+  const Vec3d place(-95, 20, -14); // no facets' edge runs along the terminator
+  const LocalFrame back(-place.normalized());
+  light.center = place;
+  light.edge_u = back.tangent, light.edge_v = back.bitangent;
   light.radiance = Vec3d::Constant(1e4);
   lights.area.push_back(light);
-  const Root white = root_of(tet_ball(8, 20), Vec3d::Ones());
+  const Root white = root_of(tet_ball(4, 20), Vec3d::Ones());
   const Scene scene(white, whole_piece(white.model().mesh), matte());
   const View view = close_up({0, 0, 0}, {0, 0, 100}, 30);
   RenderOptions o = small(60, 16, 1);
   o.max_depth = 1;
   const Film film = render(scene, view, lights, o);
-  int lit = 0;
+  int lit = 0, dark = 0;
   for (const FilmPixel& p : film.pixel) {
     if (p.hits != p.samples) continue;
     const Vec3d normal = Vec3d(p.normal[0], p.normal[1], p.normal[2]).normalized();
     const Vec3d at = Vec3d(p.position[0], p.position[1], p.position[2]) / p.hits;
-    const Vec3d to = Vec3d(-100, 0, 0) - at;
+    const Vec3d to = place - at;
     const double cosine = normal.dot(to.normalized());
-    if (cosine < 0.12) continue;
+    if (cosine < 0.05) continue;
     ++lit;
-    const double expected = 1e4 / pi * cosine * to.normalized().x() * -1 / to.squaredNorm();
-    EXPECT_NEAR(p.color[0] / p.samples / expected, 1, 0.15) << "at " << at.transpose() << " cos " << cosine;
+    const double expected = 1e4 / pi * cosine * to.normalized().dot(place.normalized()) / to.squaredNorm();
+    const double ratio = p.color[0] / p.samples / expected;
+    EXPECT_LT(ratio, 1.15);
+    dark += ratio < 0.85;
   }
-  EXPECT_GT(lit, 1000);
+  EXPECT_GT(lit, 500);
+  EXPECT_LT(dark, lit / 100) << "of " << lit;
 }
 
 TEST_F(Pictures, ContinueWhereTheyStopped) {
