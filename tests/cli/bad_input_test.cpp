@@ -1,5 +1,6 @@
 // Whatever is handed in: exit code 1, one line that says what is wrong, and no file left behind.
 #include "tests/cli/program.h"
+#include "tests/support/shared_data.h"
 #include "tests/support/tri_shapes.h"
 #include "volume/io/mesh_io.h"
 
@@ -105,6 +106,23 @@ TEST_F(BadInput, DirtySurfacesAreMadeOrRefused) {
   // Who insists on TetGen hears what is wrong.
   for (const char* surface : {"open.obj", "crossing.obj", "fin.obj"})
     expect_surface_refused(surface, surface, R"(, "tetrahedralize": {"method": "tetgen"})");
+}
+
+TEST_F(BadInput, RealSurfaces) {
+  PITH_REQUIRE_SHARED(degenerate, "meshes/dirty_all_degenerate.off");
+  expect_surface_refused(degenerate.string(), "dirty_all_degenerate.off: all of its 7 triangles are degenerate");
+  for (const char* name :
+       {"dirty_apple.ply", "dirty_beetle.obj", "dirty_elephant_holes.off", "dirty_shuffled_orientation.off",
+        "dirty_unwelded_soup.ply", "thing88566_8parts.stl", "food_donut.obj", "bell_pepper_1k.obj"}) {
+    PITH_REQUIRE_SHARED(surface, std::string("meshes/") + name);
+    SCOPED_TRACE(name);
+    write_recipe(surface.string());
+    const Outcome outcome = program.run({"make", "r.json", "-o", "out.pith", "--no-cache"});
+    EXPECT_EQ(outcome.code, 0) << outcome.complaint;
+    const Outcome check = program.run({"check", "out.pith", "--points", "2000"});
+    EXPECT_EQ(check.code, 0) << check.complaint << check.output;
+    std::filesystem::remove(program.folder / "out.pith");
+  }
 }
 
 TEST_F(BadInput, Recipes) {

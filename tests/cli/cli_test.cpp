@@ -54,7 +54,8 @@ TEST_F(Cli, MakeTellsItsStagesAndRemembersThem) {
     EXPECT_FALSE(stage["cached"]) << stage["name"];
     EXPECT_GE(stage["seconds"], 0);
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"surface", "tets", "depth 0", "frames 0", "exemplar 0", "fill 0"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"surface", "tets", "refine", "depth 0", "frames 0", "exemplar 0", "fill 0"}));
   EXPECT_GT(first["peak_memory_bytes"], 1'000'000);
   const std::string model = bytes("ball.pith");
   const json second = run({"make", "ball.json", "-o", "again.pith"});

@@ -34,7 +34,7 @@ TEST(FiveMethods, ManyMaskedVolumesOverOneAnother) {
     const std::array<double, 3> expected{(1 - blue) * (red * 1 + (1 - red) * ramp), (1 - blue) * (1 - red) * ramp,
                                          blue + (1 - blue) * (1 - red) * ramp};
     const Material m = inside(root, x);
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(m.value[c], expected[c], 2e-3) << x.transpose();
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(m.value[c], expected[c], 4e-3) << x.transpose(); // one 8-bit step
     EXPECT_NEAR(m.coverage, 1, 2e-3);
   }
 }
@@ -88,9 +88,9 @@ TEST(FiveMethods, MaskedImagesOnTheSkin) {
       const Vec3d x = facet_point(root.model(), f, random).first;
       const double blue = std::clamp((6 * x.x() / size - 0.5) / 5, 0.0, 1.0), red = 0.4;
       const Material on = material_at(root, {x, -1, f, {}});
-      EXPECT_NEAR(on.value[0], (1 - blue) * (red + 0.6), 1e-3);
-      EXPECT_NEAR(on.value[1], (1 - blue) * 0.6, 1e-3);
-      EXPECT_NEAR(on.value[2], blue + (1 - blue) * 0.6, 1e-3);
+      EXPECT_NEAR(on.value[0], (1 - blue) * (red + 0.6), 4e-3);
+      EXPECT_NEAR(on.value[1], (1 - blue) * 0.6, 4e-3);
+      EXPECT_NEAR(on.value[2], blue + (1 - blue) * 0.6, 4e-3);
       const Material below = material_at(root, {x, -1, {}, {}}); // the same place seen from inside
       EXPECT_FLOAT_EQ(below.value[1], 1);
     }

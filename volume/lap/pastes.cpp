@@ -33,19 +33,12 @@ void Pastes::look(Paste& paste) const {
       for (int k = 0; k < axes_; ++k) row[i][k] = static_cast<float>(clump.coordinate[v * axes_ + k]);
       row[i][axes_] = paste.growth.weight[v];
     }
-    // The used share: alpha times the size of the simplex' image in the texture.
+    // The used share: alpha at its middle times the size of its image in the texture.
     if (n == 4) {
       Mat3d edges;
       for (int k = 0; k < 3; ++k)
         for (int a = 0; a < 3; ++a) edges(a, k) = row[k + 1][a] - row[0][a];
-      float alpha = alpha_at({0.25f, 0.25f, 0.25f, 0.25f});
-      constexpr float near = 0.58f, far = 0.14f;
-      for (int k = 0; k < 4; ++k) {
-        std::array<float, 4> b{far, far, far, far};
-        b[k] = near;
-        alpha += alpha_at(b);
-      }
-      used += std::abs(edges.determinant()) / 6 * alpha / 5;
+      used += std::abs(edges.determinant()) / 6 * alpha_at({0.25f, 0.25f, 0.25f, 0.25f});
     }
     const std::uint32_t simplex = clump.simplex[s];
     if (!coverage_.open(simplex)) continue;

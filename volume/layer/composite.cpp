@@ -138,7 +138,7 @@ void read_exemplar(const LayerReader& reader, const Lookup& lookup, const Sight&
   if (carry) carry_directions(reader, j, point, value);
 }
 
-constexpr float opaque = 0.999f; ///< what lies below shows through by less than a quarter of an 8-bit step
+constexpr float opaque = 0.996f; ///< what lies below would change no 8-bit value by more than one step
 
 LayerValue composite_over(const LayerReader& reader, std::span<const Lookup> lookups, const SimplexPoint& point) {
   LayerValue result;
@@ -151,7 +151,11 @@ LayerValue composite_over(const LayerReader& reader, std::span<const Lookup> loo
     const float shown = (1 - result.coverage) * std::min(sight.alpha, 1.0f);
     for (int c = 0; c < reader.components; ++c) result.value[c] += shown * value[c];
     result.coverage += shown;
-    if (result.coverage >= opaque) break;
+    if (result.coverage >= opaque) { // nothing shines through: what is seen stands for the whole
+      for (int c = 0; c < reader.components; ++c) result.value[c] /= result.coverage;
+      result.coverage = 1;
+      break;
+    }
   }
   return result;
 }

@@ -2,6 +2,7 @@
 #include "volume/layer/mask.h"
 
 #include "volume/base/error.h"
+#include "volume/base/parallel.h"
 #include "volume/base/random.h"
 
 #include <algorithm>
@@ -63,8 +64,9 @@ Mask splotch_mask(const SplotchOptions& o, SplotchPart part) {
   }
   const Waviness waviness(o.seed);
   mask.alpha.resize(std::size_t(mask.size[0]) * mask.size[1] * mask.size[2]);
-  std::size_t out = 0;
-  for (int z = 0; z < mask.size[2]; ++z)
+  parallel_for(mask.size[2], 1, [&](std::size_t slice) {
+    const int z = static_cast<int>(slice);
+    std::size_t out = slice * mask.size[0] * mask.size[1];
     for (int y = 0; y < mask.size[1]; ++y)
       for (int x = 0; x < mask.size[0]; ++x, ++out) {
         Vec3d p((x + 0.5) / mask.size[0], (y + 0.5) / mask.size[1], o.axes == 3 ? (z + 0.5) / mask.size[2] : 0.5);
@@ -79,6 +81,7 @@ Mask splotch_mask(const SplotchOptions& o, SplotchPart part) {
         const double t = std::clamp(inside / o.drop_off, 0.0, 1.0);
         mask.alpha[out] = static_cast<std::uint8_t>(std::lround(255 * t * t * (3 - 2 * t)));
       }
+  });
   return mask;
 }
 
