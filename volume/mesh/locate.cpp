@@ -16,18 +16,13 @@ std::vector<std::array<Vec3d, 3>> facets_of(const TetMesh& mesh, const Boundary&
   return triangles;
 }
 
-/// Signs of x against the four facets of a tet: +1 inside, 0 on the facet's plane, −1 outside. `inside`: none
-/// negative.
-bool facet_signs(const TetMesh& mesh, TetId tet, const Vec3d& x, std::array<int, 4>& sign) {
+/// True when x lies in the closed tet: inside of, or on, the planes of all its facets.
+bool closed_contains(const TetMesh& mesh, TetId tet, const Vec3d& x) {
   const auto& corner = mesh.corner[tet];
-  bool inside = true;
-  for (int i = 0; i < 4; ++i) {
-    const auto& f = facet_corners[i];
-    // Facets are counter-clockwise from outside, so an inner point lies on their negative side.
-    sign[i] = -orientation(mesh.position[corner[f[0]]], mesh.position[corner[f[1]]], mesh.position[corner[f[2]]], x);
-    if (sign[i] < 0) inside = false;
-  }
-  return inside;
+  for (const auto& f : facet_corners)
+    if (orientation(mesh.position[corner[f[0]]], mesh.position[corner[f[1]]], mesh.position[corner[f[2]]], x) > 0)
+      return false;
+  return true;
 }
 
 double determinant(const Vec3d& u, const Vec3d& v, const Vec3d& w) { return u.dot(v.cross(w)); }
@@ -149,9 +144,8 @@ TetId Locator::lowest_owner(const Vec3d& x, std::int32_t region, TetId found, co
   const auto fits = [&](TetId t) { return region < 0 || mesh_.region[t] == region; };
   TetId best = fits(found) ? found : TetId();
   if (zeros == 0) return best;
-  std::array<int, 4> other_sign;
   const auto consider = [&](TetId t) {
-    if (t.exists() && t < best && fits(t) && facet_signs(mesh_, t, x, other_sign)) best = t;
+    if (t.exists() && t < best && fits(t) && closed_contains(mesh_, t, x)) best = t;
   };
   if (zeros == 1) {
     for (int i = 0; i < 4; ++i)
@@ -170,7 +164,6 @@ TetId Locator::lowest_owner(const Vec3d& x, std::int32_t region, TetId found, co
 TetId Locator::search_cell(const Vec3d& x, std::int32_t region) const {
   if (!bounds_.contains(x)) return {};
   const std::uint32_t cell = cell_of(x);
-  std::array<int, 4> sign;
   for (std::uint32_t i = cell_begin_[cell]; i < cell_begin_[cell + 1]; ++i) // ascending: the first hit is the lowest
     if ((region < 0 || mesh_.region[cell_tet_[i]] == region) && facet_signs(mesh_, cell_tet_[i], x, sign))
       return cell_tet_[i];
