@@ -165,7 +165,7 @@ TetId Locator::search_cell(const Vec3d& x, std::int32_t region) const {
   if (!bounds_.contains(x)) return {};
   const std::uint32_t cell = cell_of(x);
   for (std::uint32_t i = cell_begin_[cell]; i < cell_begin_[cell + 1]; ++i) // ascending: the first hit is the lowest
-    if ((region < 0 || mesh_.region[cell_tet_[i]] == region) && facet_signs(mesh_, cell_tet_[i], x, sign))
+    if ((region < 0 || mesh_.region[cell_tet_[i]] == region) && closed_contains(mesh_, cell_tet_[i], x))
       return cell_tet_[i];
   return {};
 }
