@@ -37,6 +37,12 @@ TEST(AtomicFile, LeavesNothingBehindAfterAnException) {
       },
       InvalidInput);
   EXPECT_EQ(folder.file_count(), 0u);
+  {
+    AtomicFile named(folder / "result.bin");
+    named.beside();
+    EXPECT_EQ(folder.file_count(), 1u);
+  }
+  EXPECT_EQ(folder.file_count(), 0u);
 }
 
 TEST(AtomicFile, HasNoNameBeforeItIsAskedForOne) {

@@ -61,9 +61,7 @@ inline Model ramp_model(bool skin, int cells = 6) {
       for (int x = 0; x < 51; ++x)
         for (const int i : {x, y, z}) ramp.texel.push_back(static_cast<std::uint8_t>(5 * i + 2));
   flesh.exemplar.push_back(ramp);
-  flesh.mask.push_back({.axes = 2, .size = {1, 1, 1}, .open = {true, true, false}, .alpha = {255}});
-  flesh.mask[0].axes = 3;
-  flesh.mask[0].open = {true, true, true};
+  flesh.mask.push_back({.axes = 3, .size = {1, 1, 1}, .open = {true, true, true}, .alpha = {255}});
   flesh.patch.push_back({.exemplar = 0, .mask = 0, .frame = {}, .key = 0x1234567890abcdefull});
   for (const Vec3d& x : model.mesh.position) {
     for (int i = 0; i < 3; ++i) flesh.corner.push_back(static_cast<float>(x[i] / 25 + 0.5));

@@ -233,8 +233,6 @@ TEST(ModelFile, ForeignFilesAreRefused) {
 void copy_with(const std::filesystem::path& from, const std::filesystem::path& to,
                const std::function<void(nlohmann::json&)>& change, const std::string& part = {},
                const std::function<bool(NpyArray&)>& change_array = {}) {
-  const ModelFile file = read_model(from);
-  const ZipReader reader(from, "", "");
   const ZipReader source(from, ".pith file", "");
   nlohmann::json description = nlohmann::json::parse(source.text("model.json"));
   if (change) change(description);

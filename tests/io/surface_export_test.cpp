@@ -113,7 +113,9 @@ TEST(ColoredSurface, NormalsAreUnitAndPointOutwards) {
       for (const std::uint32_t v : c) {
         const Vec3f& normal = surface.vertex[v].normal;
         ASSERT_NEAR(normal.norm(), 1, 1e-5);
-        if (area.norm() > 1e-4) ASSERT_GT(area.normalized().dot(normal.cast<double>()), 0.5);
+        if (area.norm() > 1e-4) {
+          ASSERT_GT(area.normalized().dot(normal.cast<double>()), 0.5);
+        }
         if (part.cut.exists()) continue;
         const Vec3d rest = scene.pieces.piece[part.piece].placement.inverse(point_of(surface, v));
         const Vec3d rest_normal =
