@@ -169,8 +169,7 @@ private:
     Key meshed = add(tets, recipe_.tetrahedralize).key();
     run_.announce("tets", meshed);
     KeyMaker refined = run_.key("refine").add(meshed);
-    for (const std::vector<Vec3d>& stroke : axis_strokes())
-      for (const Vec3d& x : stroke) refined.add(x.x()).add(x.y()).add(x.z());
+    for (const std::vector<Vec3d>& stroke : axis_strokes()) refined.add(stroke);
     tets_key_ = refined.key();
     meshed_key_ = meshed;
     run_.announce("refine", tets_key_);

@@ -1,9 +1,9 @@
 #pragma once
 // From a recipe to a model: a chain of pure stages, each remembered under the key of all that it depends on.
 //
-//   surface → tets → per solid: depth → frames ┐
-//                               exemplar ──────┴→ fill
-//   tets → cut 0 → cut 1 → … → move 0 → …
+//   surface → tets → refine → per solid: depth → frames ┐
+//                                        exemplar ──────┴→ fill
+//   refine → cut 0 → cut 1 → … → move 0 → …
 //
 // A changed stroke re-does only what depends on it; an appended cut runs only that cut.
 #include "recipe/cache.h"

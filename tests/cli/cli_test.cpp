@@ -140,7 +140,8 @@ TEST_F(Cli, SampleIsTheMaterialInsideAndNothingOutside) {
     const Vec3d x(points[3 * i], points[3 * i + 1], points[3 * i + 2]);
     const Material material = material_at(root, {.position = x, .region = -1, .facet = {}, .hint = {}});
     for (int c = 0; c < 3; ++c) EXPECT_EQ(static_cast<float>(value[i * width + c]), material.value[c]);
-    EXPECT_EQ(value[i * width + 3], 1);
+    EXPECT_EQ(static_cast<float>(value[i * width + 3]), material.coverage);
+    EXPECT_GE(material.coverage, 0.98);
   }
   for (const std::size_t i : {2, 3}) EXPECT_TRUE(std::isnan(value[i * width]));
   // A half that was taken away is outside.
