@@ -13,12 +13,13 @@ namespace {
 /// The section area that is seen from far away in a direction; facing it by more than 0.85 gains nothing, because a
 /// little of the skin should be seen too.
 double seen_section(const Scene& scene, const Vec3d& direction) {
+  const Vec3d right = scene.options().up.cross(direction);
   const double clearance = 1e-4 * scene.bounds().diagonal();
   double seen = 0;
   for (const Scene::SectionSample& sample : scene.section_samples()) {
     const double area = sample.area.norm(), facing = sample.area.dot(direction);
     if (!(facing > 0) || scene.occluded({sample.position + clearance / area * sample.area, direction})) continue;
-    seen += std::min(facing, 0.85 * area);
+    seen += std::min(facing, 0.85 * area) * (1 - 0.1 * sample.area.dot(right) / area);
   }
   return seen;
 }

@@ -42,4 +42,8 @@ Lights default_lights(const View& view, const Vec3d& center, double radius, cons
 /// Only the given picture of the surroundings.
 Lights environment_lights(Image latitude_longitude, double scale = 1, double turn = 0);
 
+/// Stops of exposure at which a white matte plane that faces `up` at `subject` shows 0.8: for pictures of
+/// surroundings, whose scale nobody knows. 0 where there is no light.
+double neutral_exposure(const Lights& lights, const Vec3d& subject, const Vec3d& up);
+
 } // namespace pith

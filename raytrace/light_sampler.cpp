@@ -206,4 +206,12 @@ Vec3d AreaSampler::irradiance(const Vec3d& at, const Vec3d& normal) const {
   return sum;
 }
 
+double neutral_exposure(const Lights& lights, const Vec3d& subject, const Vec3d& up) {
+  const Vec3d normal = up.normalized();
+  const Vec3d irradiance = EnvironmentSampler(lights.environment, normal, true).upward_irradiance() +
+                           AreaSampler(lights.area, subject).irradiance(subject, normal);
+  const double shown = brightness(irradiance) / pi;
+  return shown > 0 ? std::log2(0.8 / shown) : 0;
+}
+
 } // namespace pith

@@ -99,6 +99,20 @@ TEST(AreaSampler, RadianceIsSeenWithTheDensityOfItsSamples) {
   EXPECT_GT(facing, 500);
 }
 
+TEST(Lights, NeutralExposureShowsWhiteAsFourFifths) {
+  Lights lights;
+  for (Vec3d* sky : {&lights.environment.zenith, &lights.environment.horizon, &lights.environment.nadir})
+    *sky = Vec3d::Constant(3.2);
+  EXPECT_NEAR(neutral_exposure(lights, {1, 2, 3}, {0, 0, 2}), -2, 1e-9); // white shows 3.2
+  View view;
+  const double built_in =
+      neutral_exposure(default_lights(view, Vec3d::Zero(), 30, {0, 1, 0}), Vec3d::Zero(), {0, 1, 0});
+  EXPECT_LT(std::abs(built_in), 0.5);
+  EXPECT_EQ(neutral_exposure(default_lights(view, Vec3d::Zero(), 60, {0, 1, 0}), Vec3d::Zero(), {0, 1, 0}), built_in);
+  lights.environment.scale = 0;
+  EXPECT_EQ(neutral_exposure(lights, {1, 2, 3}, {0, 0, 2}), 0);
+}
+
 TEST(Lights, RefusesWhatCannotShine) {
   Lights lights;
   lights.area.push_back({});
