@@ -56,24 +56,30 @@ void run(const SampleOptions& options, const Session& session) {
   const Columns columns = columns_of(root);
   const std::size_t width = columns.name.size();
 
+  // How far a hint reaches: a walk through more tets than that costs more than to look the point up.
+  const TetMesh& mesh = root.model().mesh;
+  const double near = 3 * std::cbrt(bounds_of(mesh).extent().prod() / static_cast<double>(mesh.tet_count()));
+
   std::vector<float> value(count * width, std::numeric_limits<float>::quiet_NaN());
   std::atomic<std::size_t> outside{0}, finished{0};
   const Progress progress = session.progress("sample");
   const auto begin_sampling = std::chrono::steady_clock::now();
   parallel_blocks(count, 4096, [&](std::size_t begin, std::size_t end) {
-    TetId hint; // the last owner: points of a file are often neighbours
+    TetId last; // the last owner: points of a file are often neighbours
+    Vec3d last_at = Vec3d::Constant(std::numeric_limits<double>::infinity());
     std::size_t missed = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3d x(coordinate[3 * i], coordinate[3 * i + 1], coordinate[3 * i + 2]);
+      const TetId hint = (x - last_at).squaredNorm() < near * near ? last : TetId();
       const Location location = x.allFinite() ? root.locator().locate(x, -1, hint) : Location{};
-      if (location.inside) hint = location.tet;
+      if (location.inside) last = location.tet, last_at = x;
       if (!location.inside ||
           (!whole && piece_at(pieces, root.model().mesh, location.tet, x) >= pieces.piece.size())) {
         ++missed;
         continue;
       }
-      const Material material =
-          material_at(root, {.position = x, .region = -1, .facet = {}, .hint = hint}, location, options.footprint);
+      const Material material = material_at(root, {.position = x, .region = -1, .facet = {}, .hint = location.tet},
+                                            location, options.footprint);
       float* row = value.data() + i * width;
       for (int c = 0; c < 3; ++c) row[c] = columns.color < 0 ? 0.0f : material.value[columns.color + c];
       row[3] = material.coverage;
