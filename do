@@ -153,7 +153,7 @@ demo() {
 }
 
 # The test programs that run under the sanitizers: quick ones over the code that handles memory and files.
-sanitized=(test_base test_field test_layer test_cut)
+sanitized=(test_base test_field)
 
 run_tests() {
   local oracle=oracle slow=slow sanitizers=yes
