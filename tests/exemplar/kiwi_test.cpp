@@ -67,7 +67,7 @@ TEST(Kiwi, HasTheShapeThatALapFillAsksFor) {
 
 TEST(Kiwi, SameBytesWhateverTheThreads) {
   for (const int resolution : {16, 48, 96}) {
-    std::vector<std::uint8_t> bytes[2];
+    LargeArray<std::uint8_t> bytes[2];
     for (const int threads : {1, 2}) {
       const ThreadLimit limit(threads);
       bytes[threads - 1] = procedural_exemplar("kiwi", {.resolution = resolution, .seed = 7}).texel;

@@ -34,8 +34,8 @@ ModelFile full_file() {
   return file;
 }
 
-template <class T>
-void expect_same(const std::vector<T>& a, const std::vector<T>& b, const char* what) {
+template <class T, class Allocator>
+void expect_same(const std::vector<T, Allocator>& a, const std::vector<T, Allocator>& b, const char* what) {
   ASSERT_EQ(a.size(), b.size()) << what;
   EXPECT_TRUE(a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0) << what;
 }

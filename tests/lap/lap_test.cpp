@@ -161,12 +161,12 @@ TEST(Grow, OnConstantFramesTheMapIsTheFrameAndTheClumpIsTheMask) {
     EXPECT_EQ(growth.weight[v], 1.0f); // nothing stops growth but the mask
   }
   // Every tet whose barycentre lies under the mask belongs to it.
+  const MaskGrid grid(mask);
   const std::set<std::uint32_t> members(growth.clump.simplex.begin(), growth.clump.simplex.end());
   EXPECT_EQ(members.size(), growth.clump.simplex.size());
   for (TetId t : all_ids<TetId>(mesh.tet_count())) {
     const Vec3d w = Vec3d::Constant(0.5) + frame.transpose() * (barycenter(mesh, t) - center) / 4.0 / field.extent[0];
-    const std::array<float, 3> p{float(w.x()), float(w.y()), float(w.z())};
-    if (mask.value(p.data()) > 0.02f) {
+    if (grid.alpha(Lanes{float(w.x()), float(w.y()), float(w.z()), 0}) > 0.02f) {
       EXPECT_TRUE(members.count(t));
     }
   }

@@ -141,7 +141,7 @@ TEST_F(MeshFiles, ObjWithEverythingAtOnce) {
   ASSERT_EQ(mesh.triangle_count(), 5u);
   EXPECT_EQ(mesh.corner[TriangleId(1u)], (std::array{VertexId(0u), VertexId(2u), VertexId(3u)}));
   EXPECT_EQ(mesh.corner[TriangleId(4u)][0], VertexId(5u)); // a vertex that follows its face
-  EXPECT_EQ(std::vector<std::int32_t>(mesh.part), (std::vector<std::int32_t>{0, 0, 1, 2, 0}));
+  EXPECT_EQ(mesh.part, (PerTriangle<std::int32_t>{0, 0, 1, 2, 0}));
 }
 
 TEST_F(MeshFiles, OffWithCountsOnTheFirstLineColoursAndPolygons) {

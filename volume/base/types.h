@@ -1,5 +1,7 @@
 #pragma once
 // Vectors, strong ids and the arrays that they index. Lengths are millimetres, angles radians.
+#include "volume/base/large_array.h"
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
@@ -36,13 +38,13 @@ using CutId = Id<struct CutTag>;     ///< a cut, in the order in which the cuts 
 
 /// A vector that is indexed by one kind of id only.
 template <class Index, class T>
-class Indexed : public std::vector<T> {
+class Indexed : public LargeArray<T> {
 public:
-  using std::vector<T>::vector;
-  using reference = typename std::vector<T>::reference;
-  using const_reference = typename std::vector<T>::const_reference;
-  reference operator[](Index i) { return std::vector<T>::operator[](i.value); }
-  const_reference operator[](Index i) const { return std::vector<T>::operator[](i.value); }
+  using LargeArray<T>::vector;
+  using reference = typename LargeArray<T>::reference;
+  using const_reference = typename LargeArray<T>::const_reference;
+  reference operator[](Index i) { return LargeArray<T>::operator[](i.value); }
+  const_reference operator[](Index i) const { return LargeArray<T>::operator[](i.value); }
 };
 
 template <class T> using PerVertex = Indexed<VertexId, T>;

@@ -1,6 +1,7 @@
 #pragma once
 // Inside volume/io: zips of texts and .npy arrays, written with fixed times, read with their CRCs checked.
 #include "volume/base/error.h"
+#include "volume/base/large_array.h"
 #include "volume/io/npy.h"
 
 #include <cstring>
@@ -36,9 +37,10 @@ public:
                  Packing packing = Packing::stored) {
     add_bytes(name + ".npy", npy_header_bytes(NpyTypeOf<T>::type, shape), std::as_bytes(values), packing);
   }
-  /// One row per element, of a type that holds nothing but T.
-  template <class T, class Row>
-  void add_rows(const std::string& name, const std::vector<Row>& row, Packing packing = Packing::stored) {
+  /// One row per element of a vector, of a type that holds nothing but T.
+  template <class T, class Rows>
+  void add_rows(const std::string& name, const Rows& row, Packing packing = Packing::stored) {
+    using Row = typename Rows::value_type;
     static_assert(sizeof(Row) % sizeof(T) == 0);
     add_array<T>(name, {reinterpret_cast<const T*>(row.data()), row.size() * (sizeof(Row) / sizeof(T))},
                  row_shape<T, Row>(row.size()), packing);
@@ -74,16 +76,17 @@ public:
   /// An array of T, checked against `shape`; `any` there matches every length. `name` without ".npy".
   static constexpr std::size_t any = ~std::size_t(0);
   template <class T>
-  std::vector<T> array(const std::string& name, std::vector<std::size_t> shape) const {
+  LargeArray<T> array(const std::string& name, std::vector<std::size_t> shape) const {
     std::string first;
     const NpyHeader header = open_array(name, NpyTypeOf<T>::type, shape, first);
-    std::vector<T> values(header.value_count());
+    LargeArray<T> values(header.value_count());
     read_numbers(name, header, first, std::as_writable_bytes(std::span(values)));
     return values;
   }
   /// The same, put into rows of a type that holds nothing but T: array<std::array<VertexId, 4>>, Vec3d ...
-  template <class T, class Row>
-  void rows(const std::string& name, std::vector<Row>& row) const {
+  template <class T, class Rows>
+  void rows(const std::string& name, Rows& row) const {
+    using Row = typename Rows::value_type;
     static_assert(sizeof(Row) % sizeof(T) == 0);
     const std::vector<std::size_t> shape = row_shape<T, Row>(any);
     std::string first;

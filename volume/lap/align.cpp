@@ -60,7 +60,7 @@ std::array<float, 4> Aligner::phase(const Pastes& pastes, const Simplices& mesh,
                                     const std::array<float, 4>& random) const {
   if (coarse_.axes != 3) return random;
   const Clump& clump = paste.growth.clump;
-  const Mask& mask = pastes.masks()[paste.patch.mask];
+  const MaskGrid& mask = pastes.grids()[paste.patch.mask];
   const int n = mesh.corners, components = coarse_.component_count();
   constexpr std::size_t enough = 96;
 
@@ -78,7 +78,7 @@ std::array<float, 4> Aligner::phase(const Pastes& pastes, const Simplices& mesh,
       for (int c = 0; c < n; ++c)
         for (int a = 0; a < 3; ++a)
           m.w[a] += samples[i][c] * static_cast<float>(clump.coordinate[clump.corner[s * n + c] * 3 + a]);
-      const float alpha = mask.value(m.w.data());
+      const float alpha = mask.alpha(Lanes{m.w[0], m.w[1], m.w[2], 0});
       if (alpha < 0.1f) continue;
       for (int a = 0; a < 3; ++a) m.w[a] *= paste.patch.frame.scale[a];
       float through = 1;

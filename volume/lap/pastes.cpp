@@ -7,25 +7,23 @@
 namespace pith {
 
 Pastes::Pastes(const Simplices& mesh, Coverage coverage, std::vector<Mask> masks)
-    : mesh_(mesh), coverage_(std::move(coverage)), masks_(std::move(masks)), axes_(masks_.front().axes),
-      newest_(mesh.count, none) {
+    : mesh_(mesh), coverage_(std::move(coverage)), masks_(std::move(masks)), grids_(masks_.begin(), masks_.end()),
+      axes_(masks_.front().axes), newest_(mesh.count, none) {
   for (const Mask& mask : masks_)
     mask_volume_.push_back(std::accumulate(mask.alpha.begin(), mask.alpha.end(), 0.0) / 255 / mask.alpha.size());
 }
 
 void Pastes::look(Paste& paste) const {
   const Clump& clump = paste.growth.clump;
-  const Mask& mask = masks_[paste.patch.mask];
+  const MaskGrid& mask = grids_[paste.patch.mask];
   const int n = mesh_.corners;
   paste.shown.clear();
   paste.let_through.clear();
   double used = 0;
-  std::array<std::array<float, 4>, 4> row{};
+  std::array<Lanes, 4> row{};
   const auto alpha_at = [&](const std::array<float, 4>& b) {
-    std::array<float, 4> w{};
-    for (int k = 0; k <= axes_; ++k)
-      w[k] = (b[0] * row[0][k] + b[1] * row[1][k]) + (b[2] * row[2][k] + b[3] * row[3][k]);
-    return w[axes_] > 0 ? w[axes_] * mask.value(w.data()) : 0.0f;
+    const Lanes w = (b[0] * row[0] + b[1] * row[1]) + (b[2] * row[2] + b[3] * row[3]);
+    return w[axes_] > 0 ? w[axes_] * mask.alpha(w) : 0.0f;
   };
   for (std::uint32_t s = 0; s < clump.simplex.size(); ++s) {
     for (int i = 0; i < n; ++i) {

@@ -3,6 +3,7 @@
 #include "volume/lap/coverage.h"
 #include "volume/lap/grow.h"
 #include "volume/layer/layer.h"
+#include "volume/layer/sample.h"
 
 namespace pith {
 
@@ -22,6 +23,7 @@ public:
 
   const Coverage& coverage() const { return coverage_; }
   const std::vector<Mask>& masks() const { return masks_; }
+  const std::vector<MaskGrid>& grids() const { return grids_; } ///< of the masks
   std::size_t count() const { return patch_.size(); }
 
   /// Finds where a grown paste can be seen, and its used share. Reads the coverage as it is now.
@@ -45,7 +47,7 @@ public:
         for (int k = 0; k <= axes_; ++k)
           w[k] += barycentric[i] * corner_[std::size_t(lookup.corner[i]) * (axes_ + 1) + k];
       const Patch& patch = patch_[lookup.patch];
-      const float alpha = w[axes_] > 0 ? w[axes_] * masks_[patch.mask].value(w.data()) : 0.0f;
+      const float alpha = w[axes_] > 0 ? w[axes_] * grids_[patch.mask].alpha(lanes_at(w.data())) : 0.0f;
       if (alpha > 0 && !see(patch, w, alpha)) return;
     }
   }
@@ -58,10 +60,11 @@ private:
   const Simplices& mesh_;
   Coverage coverage_;
   std::vector<Mask> masks_;
+  std::vector<MaskGrid> grids_;
   std::vector<double> mask_volume_;
   int axes_;
   std::vector<Patch> patch_;
-  std::vector<float> corner_;
+  LargeArray<float> corner_;
   std::vector<Lookup> lookup_;        ///< in order of commit
   std::vector<std::uint32_t> newest_; ///< per simplex, its latest look-up
   std::vector<std::uint32_t> older_;  ///< per look-up, the one before it on the same simplex

@@ -3,6 +3,8 @@
 // 2018).
 #include "volume/layer/composite.h"
 
+#include "volume/base/parallel.h"
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -37,33 +39,66 @@ LayerReader::LayerReader(const Layer& l, bool mips) : layer(&l), components(l.ex
   std::array<float, 256> deviations;
   for (int byte = 0; byte < 256; ++byte) deviations[byte] = (byte / 255.0f - 0.5f) * 6;
   gaussian_decode.assign(components, deviations);
+
+  for (const Mask& m : l.mask) mask.emplace_back(m);
+  for (const Patch& p : l.patch) {
+    PatchReader reader{.mask = p.mask == Patch::no_mask ? nullptr : &mask[p.mask], .source = &source[p.exemplar]};
+    for (int k = 0; k < l.width; ++k) {
+      reader.scale[k] = l.evaluation.scale[k] * p.frame.scale[k];
+      reader.offset[k] = l.evaluation.scale[k] * p.frame.offset[k] + l.evaluation.offset[k];
+    }
+    patch.push_back(reader);
+  }
+  const std::size_t row = l.width + 1, corners = l.domain == Domain::solid ? 4 : 3;
+  record_size = row * corners;
+  record.resize(l.lookup.size() * record_size + 4); // rows are read four numbers at a time
+  parallel_for(l.lookup.size(), 4096, [&](std::size_t i) {
+    for (std::size_t k = 0; k < corners; ++k)
+      std::copy_n(l.corner.data() + l.lookup[i].corner[k] * row, row, record.data() + i * record_size + k * row);
+  });
 }
 
 namespace {
 
 /// A look-up at the point: its coordinates in the patch's unit cube and its masked weight.
 struct Sight {
-  std::array<float, 5> w; ///< coordinates, then the interpolated corner weight
+  Lanes w; ///< lanes beyond the layer's width mean nothing
   float alpha;
 };
 
-inline Sight sight_of(const Layer& layer, const Lookup& lookup, const std::array<float, 4>& b) {
+/// A sight whose alpha is the interpolated corner weight, not yet masked.
+template <int Width>
+inline Sight weight_at(const LayerReader& reader, const Lookup& lookup, const std::array<float, 4>& b) {
+  constexpr int row = Width + 1;
+  const float* r = reader.record.data() + (&lookup - reader.layer->lookup.data()) * reader.record_size;
+  const bool solid = reader.layer->domain == Domain::solid; // a facet has three rows; its b[3] is 0
+  const float* last = r + (solid ? 3 : 2) * row;
   Sight s;
-  const int stride = layer.width + 1;
-  const float* rows[4] = {layer.corner.data() + std::size_t(lookup.corner[0]) * stride,
-                          layer.corner.data() + std::size_t(lookup.corner[1]) * stride,
-                          layer.corner.data() + std::size_t(lookup.corner[2]) * stride, nullptr};
-  const bool solid = layer.domain == Domain::solid;
-  rows[3] = solid ? layer.corner.data() + std::size_t(lookup.corner[3]) * stride : rows[2];
-  const float last = solid ? b[3] : 0.0f;
-  for (int k = 0; k < stride; ++k)
-    s.w[k] = (b[0] * rows[0][k] + b[1] * rows[1][k]) + (b[2] * rows[2][k] + last * rows[3][k]);
-  s.alpha = s.w[layer.width];
-  if (s.alpha > 0) {
-    const Patch& patch = layer.patch[lookup.patch];
-    if (patch.mask != Patch::no_mask) s.alpha *= layer.mask[patch.mask].value(s.w.data());
-  }
+  s.w = (b[0] * lanes_at(r) + b[1] * lanes_at(r + row)) + (b[2] * lanes_at(r + 2 * row) + b[3] * lanes_at(last));
+  if constexpr (Width < 4)
+    s.alpha = s.w[Width];
+  else
+    s.alpha = (b[0] * r[4] + b[1] * r[row + 4]) + (b[2] * r[2 * row + 4] + b[3] * last[4]);
   return s;
+}
+
+template <int Width>
+inline Sight sight_at(const LayerReader& reader, const Lookup& lookup, const std::array<float, 4>& b) {
+  Sight s = weight_at<Width>(reader, lookup, b);
+  if (s.alpha > 0)
+    if (const MaskGrid* mask = reader.patch[lookup.patch].mask) s.alpha *= mask->alpha(s.w);
+  return s;
+}
+
+Sight sight_of(const LayerReader& reader, const Lookup& lookup, const std::array<float, 4>& b) {
+  switch (reader.layer->width) {
+  case 2:
+    return sight_at<2>(reader, lookup, b);
+  case 3:
+    return sight_at<3>(reader, lookup, b);
+  default:
+    return sight_at<4>(reader, lookup, b);
+  }
 }
 
 /// Rows: gradients (1/mm) of the exemplar coordinates over rest space.
@@ -104,35 +139,30 @@ void carry_directions(const LayerReader& reader, const Jacobian& j, const Simple
   }
 }
 
-/// The exemplar's values at a sight: frame, evaluation, mip level, and directions in rest space.
+/// The exemplar's values at a sight: mip level, and directions in rest space.
 void read_exemplar(const LayerReader& reader, const Lookup& lookup, const Sight& sight, const SimplexPoint& point,
                    bool gaussian, float* value) {
   const Layer& layer = *reader.layer;
-  const Patch& patch = layer.patch[lookup.patch];
-  const LayerReader::Source& source = reader.source[patch.exemplar];
-  std::array<float, 4> u{};
-  for (int k = 0; k < layer.width; ++k) {
-    const float framed = patch.frame.scale[k] * sight.w[k] + patch.frame.offset[k];
-    u[k] = layer.evaluation.scale[k] * framed + layer.evaluation.offset[k];
-  }
-  const std::vector<TexelGrid>& levels = gaussian ? source.gaussian : source.level;
-  const DecodeTable& decode = gaussian ? reader.gaussian_decode : source.decode;
+  const LayerReader::PatchReader& patch = reader.patch[lookup.patch];
+  const Lanes u = patch.scale * sight.w + patch.offset;
+  const std::vector<TexelGrid>& levels = gaussian ? patch.source->gaussian : patch.source->level;
+  const DecodeTable& decode = gaussian ? reader.gaussian_decode : patch.source->decode;
   const bool carry = reader.has_directions && !gaussian;
-  if (point.footprint <= 0 && !carry) return sample(levels[0], decode, u.data(), value);
+  if (point.footprint <= 0 && !carry) return sample(levels[0], decode, cell_at(levels[0], u), value);
 
   const Jacobian j = jacobian_of(layer, lookup, point);
   double level = 0;
   if (point.footprint > 0) {
     double texels = 1;
     for (int k = 0; k < layer.width; ++k)
-      texels = std::max(texels, j.row(k).norm() * layer.exemplar[patch.exemplar].size[k] * point.footprint);
+      texels = std::max(texels, j.row(k).norm() * levels[0].texels[k] * point.footprint);
     level = std::min(std::log2(texels), static_cast<double>(levels.size() - 1));
   }
   const std::size_t fine = static_cast<std::size_t>(level);
-  sample(levels[fine], decode, u.data(), value);
+  sample(levels[fine], decode, cell_at(levels[fine], u), value);
   if (const float blend = static_cast<float>(level - fine); blend > 0) {
     std::array<float, max_components> coarse;
-    sample(levels[fine + 1], decode, u.data(), coarse.data());
+    sample(levels[fine + 1], decode, cell_at(levels[fine + 1], u), coarse.data());
     for (int c = 0; c < reader.components; ++c) value[c] += blend * (coarse[c] - value[c]);
   }
   if (carry) carry_directions(reader, j, point, value);
@@ -140,21 +170,59 @@ void read_exemplar(const LayerReader& reader, const Lookup& lookup, const Sight&
 
 constexpr float opaque = 0.996f; ///< what lies below would change no 8-bit value by more than one step
 
+/// From the newest paste down until nothing shines through. Reading a mask, then an exemplar, then the next mask
+/// would wait for the memory each time: so a few look-ups at once are prepared, and what they will read is asked for.
+/// Components 0: any number.
+template <int Width, int Components>
 LayerValue composite_over(const LayerReader& reader, std::span<const Lookup> lookups, const SimplexPoint& point) {
+  constexpr int ahead = 3;
+  const int components = Components ? Components : reader.components;
+  const bool plain = !needs_gradient(reader, point.footprint);
+  struct Candidate {
+    Sight sight;
+    TexelCell cell;
+    const Lookup* lookup;
+    const LayerReader::PatchReader* patch;
+  };
   LayerValue result;
   std::array<float, max_components> value;
-  for (std::size_t i = lookups.size(); i-- > 0;) {
-    const Sight sight = sight_of(*reader.layer, lookups[i], point.barycentric);
-    if (!(sight.alpha > 0)) continue;
-    read_exemplar(reader, lookups[i], sight, point, false, value.data());
-    ++result.lookups_read;
-    const float shown = (1 - result.coverage) * std::min(sight.alpha, 1.0f);
-    for (int c = 0; c < reader.components; ++c) result.value[c] += shown * value[c];
-    result.coverage += shown;
-    if (result.coverage >= opaque) { // nothing shines through: what is seen stands for the whole
-      for (int c = 0; c < reader.components; ++c) result.value[c] /= result.coverage;
-      result.coverage = 1;
-      break;
+  for (std::size_t next = lookups.size(); next > 0;) {
+    std::array<Candidate, ahead> candidate;
+    int count = 0;
+    for (; next > 0 && count < ahead; --next) {
+      Candidate& c = candidate[count];
+      c.lookup = &lookups[next - 1];
+      c.sight = weight_at<Width>(reader, *c.lookup, point.barycentric);
+      c.patch = &reader.patch[c.lookup->patch];
+      if (!(c.sight.alpha > 0)) continue;
+      if (c.patch->mask) {
+        if (!c.patch->mask->reaches(c.sight.w)) continue;
+        c.patch->mask->prefetch(c.sight.w);
+      }
+      if (plain) {
+        const TexelGrid& grid = c.patch->source->level[0];
+        c.cell = cell_at(grid, c.patch->scale * c.sight.w + c.patch->offset);
+        prefetch(grid, c.cell);
+      }
+      ++count;
+    }
+    for (int i = 0; i < count; ++i) {
+      Candidate& c = candidate[i];
+      if (c.patch->mask) c.sight.alpha *= c.patch->mask->alpha(c.sight.w);
+      if (!(c.sight.alpha > 0)) continue;
+      if (plain)
+        sample(c.patch->source->level[0], c.patch->source->decode, c.cell, value.data());
+      else
+        read_exemplar(reader, *c.lookup, c.sight, point, false, value.data());
+      ++result.lookups_read;
+      const float shown = (1 - result.coverage) * std::min(c.sight.alpha, 1.0f);
+      for (int k = 0; k < components; ++k) result.value[k] += shown * value[k];
+      result.coverage += shown;
+      if (result.coverage >= opaque) { // nothing shines through: what is seen stands for the whole
+        for (int k = 0; k < components; ++k) result.value[k] /= result.coverage;
+        result.coverage = 1;
+        return result;
+      }
     }
   }
   return result;
@@ -172,7 +240,7 @@ Weighted weighted_lookups(const LayerReader& reader, std::span<const Lookup> loo
   Weighted kept;
   float total = 0;
   for (const Lookup& lookup : lookups) {
-    const Sight sight = sight_of(*reader.layer, lookup, point.barycentric);
+    const Sight sight = sight_of(reader, lookup, point.barycentric);
     if (!(sight.alpha > 0)) continue;
     total += sight.alpha;
     int slot = kept.count;
@@ -268,15 +336,23 @@ LayerValue composite_weights(const LayerReader& reader, std::span<const Lookup> 
 } // namespace
 
 LayerValue composite(const LayerReader& reader, std::span<const Lookup> lookups, const SimplexPoint& point) {
-  return reader.layer->blend.mix == Blend::Mix::over ? composite_over(reader, lookups, point)
-                                                     : composite_weights(reader, lookups, point);
+  if (reader.layer->blend.mix != Blend::Mix::over) return composite_weights(reader, lookups, point);
+  switch (reader.layer->width) {
+  case 2:
+    return composite_over<2, 0>(reader, lookups, point);
+  case 3:
+    return reader.components == 3 ? composite_over<3, 3>(reader, lookups, point)
+                                  : composite_over<3, 0>(reader, lookups, point);
+  default:
+    return composite_over<4, 0>(reader, lookups, point);
+  }
 }
 
 LayerCoverage coverage_of(const LayerReader& reader, std::span<const Lookup> lookups, const SimplexPoint& point) {
   LayerCoverage result;
   float sum = 0, shown_through = 1;
   for (const Lookup& lookup : lookups) {
-    const float alpha = sight_of(*reader.layer, lookup, point.barycentric).alpha;
+    const float alpha = sight_of(reader, lookup, point.barycentric).alpha;
     if (!(alpha > 0)) continue;
     ++result.visible;
     sum += alpha;

@@ -7,7 +7,9 @@
 
 namespace pith {
 
-/// A layer with what is needed to read it fast: grids for every mip level, decoding tables. Refers to the layer.
+/// A layer with what is needed to read it fast: grids for every mip level, decoding tables, and the corner rows of
+/// every look-up side by side (with 3 coordinates in a tet one line of the cache instead of four). Refers to the
+/// layer. Memory: 64 bytes per look-up and the coarser levels.
 struct LayerReader {
   explicit LayerReader(const Layer& layer, bool mips);
 
@@ -16,13 +18,26 @@ struct LayerReader {
     std::vector<TexelGrid> gaussian; ///< the twins, same levels; empty without
     DecodeTable decode;
   };
+  /// A patch: exemplar coordinates are scale · w + offset (its frame, then the layer's evaluation).
+  struct PatchReader {
+    Lanes scale{}, offset{};
+    const MaskGrid* mask; ///< null: none
+    const Source* source;
+  };
   const Layer* layer;
   std::vector<Source> source;                 ///< per exemplar
   std::vector<std::vector<Exemplar>> coarser; ///< per exemplar, the mips that `level` points into
-  DecodeTable gaussian_decode;                ///< bytes of a twin → standard deviations
+  std::vector<MaskGrid> mask;
+  std::vector<PatchReader> patch;
+  std::size_t record_size = 0; ///< (width + 1) · corners
+  LargeArray<float> record;    ///< per look-up, its corner rows
+  DecodeTable gaussian_decode; ///< bytes of a twin → standard deviations
   int components = 0;
   int height_component = -1; ///< of the first height channel
   bool has_directions = false;
+
+  LayerReader(LayerReader&&) = default; ///< `patch` points into vectors whose memory moves along
+  LayerReader(const LayerReader&) = delete;
 };
 
 /// A place on one simplex: a tet (4 corners) or a boundary facet (3).
@@ -46,7 +61,7 @@ inline bool needs_gradient(const LayerReader& reader, double footprint) {
   return reader.has_directions || footprint > 0;
 }
 
-/// The value of a row of look-ups (a simplex's, in paste order).
+/// The value of a row of look-ups (a simplex's, in paste order). `lookups` is a part of the layer's own list.
 LayerValue composite(const LayerReader& reader, std::span<const Lookup> lookups, const SimplexPoint& point);
 
 /// Coverage alone, and how many look-ups have a positive masked weight: for the measures of a fill.

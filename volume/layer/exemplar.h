@@ -40,12 +40,12 @@ struct Exemplar {
   std::array<int, 4> size{1, 1, 1, 1}; ///< texels along each axis; 1 beyond `axes`
   std::array<Wrap, 4> wrap{Wrap::clamp, Wrap::clamp, Wrap::clamp, Wrap::clamp};
   std::vector<Channel> channel;
-  std::vector<std::uint8_t> texel; ///< texel_count() · component_count()
+  LargeArray<std::uint8_t> texel; ///< texel_count() · component_count()
 
   /// Optional, for Blend::Mix::histogram: the same texels made Gaussian (byte b stands for (b/255 − ½) · 6 standard
   /// deviations) and, per component, the 256 decoded values that a Gaussian byte maps back to (Heitz, Neyret 2018).
-  std::vector<std::uint8_t> gaussian;
-  std::vector<float> inverse; ///< component_count() · 256
+  LargeArray<std::uint8_t> gaussian;
+  LargeArray<float> inverse; ///< component_count() · 256
 
   std::size_t texel_count() const { return std::size_t(size[0]) * size[1] * size[2] * size[3]; }
   int component_count() const;

@@ -37,7 +37,13 @@ void validate(const Layer& layer, std::size_t simplex_count) {
     if (m.axes < 2 || m.axes > std::min(3, layer.width) ||
         m.alpha.size() != std::size_t(m.size[0]) * m.size[1] * m.size[2] || m.alpha.empty())
       refuse("has a mask whose size and alpha do not agree", "give size[0] · size[1] · size[2] bytes");
+  const auto finite = [](const AxisMap& map) {
+    return std::all_of(map.scale.begin(), map.scale.end(), [](float x) { return std::isfinite(x); }) &&
+           std::all_of(map.offset.begin(), map.offset.end(), [](float x) { return std::isfinite(x); });
+  };
+  if (!finite(layer.evaluation)) refuse("has an evaluation that is not finite", "check the author that made it");
   for (const Patch& p : layer.patch) {
+    if (!finite(p.frame)) refuse("has a patch whose frame is not finite", "check the author that made it");
     if (p.exemplar >= layer.exemplar.size())
       refuse("has a patch of an exemplar that does not exist", "number them from 0");
     if (p.mask != Patch::no_mask && p.mask >= layer.mask.size())

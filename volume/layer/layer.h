@@ -69,15 +69,15 @@ struct Layer {
   std::vector<Patch> patch;
   /// Rows of width + 1 numbers: coordinates in the patch's unit cube, then the weight in [0, 1] that multiplies the
   /// mask.
-  std::vector<float> corner;
+  LargeArray<float> corner;
   /// Exemplar coordinates are evaluation(frame(w)); the mask is read at w itself. Animates m, or moves a layer's
   /// material, without rebuilding it.
   AxisMap evaluation;
   /// Compressed rows: the look-ups of simplex i are lookup[begin[i]] … lookup[begin[i + 1] − 1], in paste order. When
   /// `simplex` is not empty the layer is sparse: row i belongs to simplex[i] (ascending).
-  std::vector<std::uint32_t> begin;
+  LargeArray<std::uint32_t> begin;
   std::vector<std::uint32_t> simplex;
-  std::vector<Lookup> lookup;
+  LargeArray<Lookup> lookup;
 
   std::size_t corner_count() const { return corner.size() / (width + 1); }
 };

@@ -11,36 +11,9 @@ struct Mask {
   int axes = 3;
   std::array<int, 3> size{1, 1, 1};
   std::array<bool, 3> open{false, false, false};
-  std::vector<std::uint8_t> alpha;
+  LargeArray<std::uint8_t> alpha;
 
-  /// Alpha in [0, 1] at a position; reads `axes` numbers.
-  float value(const float* position) const {
-    std::array<int, 3> low{}, step{};
-    std::array<float, 3> fraction{};
-    int stride = 1;
-    for (int axis = 0; axis < axes; ++axis) {
-      const float p = position[axis];
-      if (!open[axis] && !(p >= 0 && p <= 1)) return 0;
-      const float last = static_cast<float>(size[axis] - 1), at = p * size[axis] - 0.5f;
-      const float inside = at > 0 ? (at < last ? at : last) : 0;
-      const int i = static_cast<int>(inside);
-      low[axis] = i * stride;
-      step[axis] = i + 1 < size[axis] ? stride : 0;
-      fraction[axis] = inside - i;
-      stride *= size[axis];
-    }
-    const std::uint8_t* cell = alpha.data() + low[0] + low[1] + low[2];
-    const auto row = [&](const std::uint8_t* a) { return a[0] + fraction[0] * (a[step[0]] - a[0]); };
-    const auto slice = [&](const std::uint8_t* a) {
-      const float first = row(a);
-      return first + fraction[1] * (row(a + step[1]) - first);
-    };
-    const float first = slice(cell);
-    const float value = axes == 3 ? first + fraction[2] * (slice(cell + step[2]) - first) : first;
-    return value * (1 / 255.0f);
-  }
-
-  /// True when the texel that holds the position is not 0: cheaper than value().
+  /// True when the texel that holds the position is not 0: cheaper than MaskGrid::alpha() (sample.h).
   bool touches(const double* position) const {
     std::size_t index = 0, stride = 1;
     for (int axis = 0; axis < axes; ++axis) {

@@ -5,17 +5,23 @@
 
 namespace pith {
 
-TexelGrid texel_grid(const Exemplar& exemplar, const std::vector<std::uint8_t>& texels) {
+TexelGrid texel_grid(const Exemplar& exemplar, std::span<const std::uint8_t> texels) {
   TexelGrid grid;
   grid.texel = texels.data();
   grid.axes = exemplar.axes;
   grid.components = exemplar.component_count();
-  grid.size = exemplar.size;
-  grid.wrap = exemplar.wrap;
   std::uint32_t stride = grid.components;
   for (int axis = 0; axis < 4; ++axis) {
-    grid.stride[axis] = stride;
-    stride *= exemplar.size[axis];
+    const int n = exemplar.size[axis];
+    const bool repeats = exemplar.wrap[axis] == Wrap::repeat;
+    grid.texels[axis] = static_cast<float>(n);
+    grid.count[axis] = n;
+    grid.stride[axis] = static_cast<std::int32_t>(stride);
+    grid.repeats[axis] = repeats ? -1 : 0;
+    grid.mirrors[axis] = exemplar.wrap[axis] == Wrap::mirror ? -1 : 0;
+    grid.before[axis] = repeats ? n - 1 : 0;
+    grid.behind[axis] = repeats ? 0 : n - 1;
+    stride *= n;
   }
   return grid;
 }
@@ -32,40 +38,18 @@ DecodeTable decode_table(const Exemplar& exemplar) {
 
 namespace {
 
-/// The two texels around a position along one axis, as byte offsets, and the weight of the second.
+/// The two texels along one axis, as byte offsets, and the weight of the second.
 struct Span {
   std::uint32_t low, high;
   float fraction;
 };
-
-inline int wrapped(int i, int n, Wrap wrap) {
-  if (static_cast<unsigned>(i) < static_cast<unsigned>(n)) return i;
-  switch (wrap) {
-  case Wrap::clamp:
-    return i < 0 ? 0 : n - 1;
-  case Wrap::repeat:
-    return (i %= n) < 0 ? i + n : i;
-  case Wrap::mirror: {
-    const int period = 2 * n;
-    if ((i %= period) < 0) i += period;
-    return i < n ? i : period - 1 - i;
-  }
-  }
-  return 0;
-}
-
-inline Span span_at(const TexelGrid& grid, int axis, float position) {
-  const int n = grid.size[axis];
-  const float at = std::clamp(position * n - 0.5f, -1e8f, 1e8f);
-  int i = static_cast<int>(at);
-  i -= at < i; // floor
-  return {wrapped(i, n, grid.wrap[axis]) * grid.stride[axis], wrapped(i + 1, n, grid.wrap[axis]) * grid.stride[axis],
-          at - i};
+inline Span span_of(const TexelCell& cell, int axis) {
+  return {std::uint32_t(cell.low[axis]), std::uint32_t(cell.high[axis]), cell.fraction[axis]};
 }
 
 template <int Components>
-void sample_square(const TexelGrid& grid, const DecodeTable& decode, const Span& x, const Span& y, std::uint32_t base,
-                   float* result) {
+inline void sample_square(const TexelGrid& grid, const DecodeTable& decode, const Span& x, const Span& y,
+                          std::uint32_t base, float* result) {
   const std::uint8_t* a = grid.texel + base + y.low;
   const std::uint8_t* b = grid.texel + base + y.high;
   const int components = Components ? Components : grid.components;
@@ -79,9 +63,10 @@ void sample_square(const TexelGrid& grid, const DecodeTable& decode, const Span&
 }
 
 template <int Components>
-void sample_cube(const TexelGrid& grid, const DecodeTable& decode, const Span& x, const Span& y, const Span& z,
-                 std::uint32_t base, float* result) {
-  std::array<float, max_components> far;
+inline void sample_cube(const TexelGrid& grid, const DecodeTable& decode, const TexelCell& cell, std::uint32_t base,
+                        float* result) {
+  const Span x = span_of(cell, 0), y = span_of(cell, 1), z = span_of(cell, 2);
+  std::array<float, Components ? Components : max_components> far;
   const int components = Components ? Components : grid.components;
   sample_square<Components>(grid, decode, x, y, base + z.low, result);
   sample_square<Components>(grid, decode, x, y, base + z.high, far.data());
@@ -90,19 +75,40 @@ void sample_cube(const TexelGrid& grid, const DecodeTable& decode, const Span& x
 
 } // namespace
 
-void sample(const TexelGrid& grid, const DecodeTable& decode, const float* position, float* result) {
-  const Span x = span_at(grid, 0, position[0]), y = span_at(grid, 1, position[1]);
-  if (grid.axes == 2) return sample_square<0>(grid, decode, x, y, 0, result);
-  const Span z = span_at(grid, 2, position[2]);
+void sample(const TexelGrid& grid, const DecodeTable& decode, const TexelCell& cell, float* result) {
+  if (grid.axes == 2) return sample_square<0>(grid, decode, span_of(cell, 0), span_of(cell, 1), 0, result);
   if (grid.axes == 3) {
-    if (grid.components == 3) return sample_cube<3>(grid, decode, x, y, z, 0, result);
-    return sample_cube<0>(grid, decode, x, y, z, 0, result);
+    if (grid.components == 3) return sample_cube<3>(grid, decode, cell, 0, result);
+    return sample_cube<0>(grid, decode, cell, 0, result);
   }
-  const Span w = span_at(grid, 3, position[3]);
+  const Span w = span_of(cell, 3);
   std::array<float, max_components> far;
-  sample_cube<0>(grid, decode, x, y, z, w.low, result);
-  sample_cube<0>(grid, decode, x, y, z, w.high, far.data());
+  sample_cube<0>(grid, decode, cell, w.low, result);
+  sample_cube<0>(grid, decode, cell, w.high, far.data());
   for (int c = 0; c < grid.components; ++c) result[c] += w.fraction * (far[c] - result[c]);
+}
+
+MaskGrid::MaskGrid(const Mask& mask) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  std::array<std::uint32_t, 3> size{};
+  for (int axis = 0; axis < 4; ++axis) {
+    const bool used = axis < mask.axes, open = !used || mask.open[axis];
+    const int n = used ? mask.size[axis] : 1;
+    if (axis < 3) size[axis] = n;
+    low_[axis] = open ? -infinity : 0;
+    high_[axis] = open ? infinity : 1;
+    texels_[axis] = used ? static_cast<float>(n) : 0; // 0: the only texel, wherever it is read
+    last_[axis] = static_cast<float>(n - 1);
+  }
+  row_ = size[0] + 1;
+  slice_ = row_ * (size[1] + 1);
+  alpha_.reserve(std::size_t(slice_) * (size[2] + 1));
+  for (std::uint32_t z = 0; z <= size[2]; ++z)
+    for (std::uint32_t y = 0; y <= size[1]; ++y)
+      for (std::uint32_t x = 0; x <= size[0]; ++x)
+        alpha_.push_back(
+            mask.alpha[(std::size_t(std::min(z, size[2] - 1)) * size[1] + std::min(y, size[1] - 1)) * size[0] +
+                       std::min(x, size[0] - 1)]);
 }
 
 } // namespace pith
