@@ -37,15 +37,18 @@ Survey survey_of(const Root& root, std::size_t points, std::uint64_t seed, const
   constexpr std::size_t block = 2048;
   std::atomic<std::size_t> finished{0};
   parallel_blocks(points, block, [&](std::size_t begin, std::size_t end) {
+    std::vector<MaterialPoint> place;
     for (std::size_t i = begin; i < end; ++i) {
       Random random(seed, stage, i);
       const auto found = std::upper_bound(volume_up_to.begin(), volume_up_to.end(), random.uniform() * total);
       const TetId tet(std::min<std::size_t>(found - volume_up_to.begin(), mesh.tet_count() - 1));
-      const MaterialPoint point{
-          .position = random_point_in(mesh, tet, random), .region = mesh.region[tet], .facet = {}, .hint = tet};
-      const Material material = material_at(root, point);
-      answer[i] = {material.coverage, material.lookups_read, point.position};
+      place.push_back(
+          {.position = random_point_in(mesh, tet, random), .region = mesh.region[tet], .facet = {}, .hint = tet});
     }
+    std::vector<Material> material(place.size());
+    materials_at(root, place, material);
+    for (std::size_t i = begin; i < end; ++i)
+      answer[i] = {material[i - begin].coverage, material[i - begin].lookups_read, place[i - begin].position};
     report(progress, static_cast<double>(finished += end - begin) / static_cast<double>(points));
   });
 

@@ -97,11 +97,14 @@ TEST_P(Consistency, SurvivesTwoCutsMovesThreadsAndDisk) {
   ASSERT_EQ(read_points.size(), points.size());
 
   std::size_t different = 0, colors = 0;
+  std::vector<Material> together(points.size());
+  materials_at(root, points, together);
   for (std::size_t i = 0; i < points.size(); ++i) {
     MaterialPoint plain = points[i]; // as somebody asks who knows nothing of pieces
     plain.hint = {};
     different += !same_bits(one_thread[i], material_at(root, plain));
     different += !same_bits(one_thread[i], two_threads[i]);
+    different += !same_bits(one_thread[i], together[i]);
     ASSERT_EQ(read_points[i].position, points[i].position);
     different += !same_bits(one_thread[i], material_at(read, read_points[i]));
     colors += one_thread[i].coverage > 0;

@@ -12,22 +12,22 @@
 namespace pith {
 
 LayerReader::LayerReader(const Layer& l, bool mips) : layer(&l), components(l.exemplar.front().component_count()) {
-  coarser.resize(l.exemplar.size());
-  for (std::size_t i = 0; i < l.exemplar.size(); ++i) {
-    const Exemplar* level = &l.exemplar[i];
-    while (mips && std::max({level->size[0], level->size[1], level->size[2], level->size[3]}) > 2) {
-      coarser[i].reserve(16);
-      coarser[i].push_back(half_size(*level));
-      level = &coarser[i].back();
-    }
+  std::array<float, 256> deviations;
+  for (int byte = 0; byte < 256; ++byte) deviations[byte] = (byte / 255.0f - 0.5f) * 6;
+  const DecodeTable twin_decode(components, deviations);
+  for (const Exemplar& finest : l.exemplar) {
     Source s;
+    const DecodeTable decode = decode_table(finest);
     const auto add = [&](const Exemplar& e) {
-      s.level.push_back(texel_grid(e, e.texel));
-      if (!e.gaussian.empty()) s.gaussian.push_back(texel_grid(e, e.gaussian));
+      s.level.push_back(texel_grid(e, e.texel, decode));
+      if (!e.gaussian.empty()) s.gaussian.push_back(texel_grid(e, e.gaussian, twin_decode));
     };
-    add(l.exemplar[i]);
-    for (const Exemplar& e : coarser[i]) add(e);
-    s.decode = decode_table(l.exemplar[i]);
+    add(finest);
+    Exemplar level;
+    for (const Exemplar* e = &finest; mips && *std::max_element(e->size.begin(), e->size.end()) > 2; e = &level) {
+      level = half_size(*e);
+      add(level);
+    }
     source.push_back(std::move(s));
   }
   int component = 0;
@@ -36,10 +36,6 @@ LayerReader::LayerReader(const Layer& l, bool mips) : layer(&l), components(l.ex
     has_directions |= c.semantic == Semantic::direction || c.semantic == Semantic::normal;
     component += c.components;
   }
-  std::array<float, 256> deviations;
-  for (int byte = 0; byte < 256; ++byte) deviations[byte] = (byte / 255.0f - 0.5f) * 6;
-  gaussian_decode.assign(components, deviations);
-
   for (const Mask& m : l.mask) mask.emplace_back(m);
   for (const Patch& p : l.patch) {
     PatchReader reader{.mask = p.mask == Patch::no_mask ? nullptr : &mask[p.mask], .source = &source[p.exemplar]};
@@ -146,9 +142,8 @@ void read_exemplar(const LayerReader& reader, const Lookup& lookup, const Sight&
   const LayerReader::PatchReader& patch = reader.patch[lookup.patch];
   const Lanes u = patch.scale * sight.w + patch.offset;
   const std::vector<TexelGrid>& levels = gaussian ? patch.source->gaussian : patch.source->level;
-  const DecodeTable& decode = gaussian ? reader.gaussian_decode : patch.source->decode;
   const bool carry = reader.has_directions && !gaussian;
-  if (point.footprint <= 0 && !carry) return sample(levels[0], decode, cell_at(levels[0], u), value);
+  if (point.footprint <= 0 && !carry) return sample(levels[0], cell_at(levels[0], u), value);
 
   const Jacobian j = jacobian_of(layer, lookup, point);
   double level = 0;
@@ -159,10 +154,10 @@ void read_exemplar(const LayerReader& reader, const Lookup& lookup, const Sight&
     level = std::min(std::log2(texels), static_cast<double>(levels.size() - 1));
   }
   const std::size_t fine = static_cast<std::size_t>(level);
-  sample(levels[fine], decode, cell_at(levels[fine], u), value);
+  sample(levels[fine], cell_at(levels[fine], u), value);
   if (const float blend = static_cast<float>(level - fine); blend > 0) {
     std::array<float, max_components> coarse;
-    sample(levels[fine + 1], decode, cell_at(levels[fine + 1], u), coarse.data());
+    sample(levels[fine + 1], cell_at(levels[fine + 1], u), coarse.data());
     for (int c = 0; c < reader.components; ++c) value[c] += blend * (coarse[c] - value[c]);
   }
   if (carry) carry_directions(reader, j, point, value);
@@ -175,7 +170,7 @@ constexpr float opaque = 0.996f; ///< what lies below would change no 8-bit valu
 /// Components 0: any number.
 template <int Width, int Components>
 LayerValue composite_over(const LayerReader& reader, std::span<const Lookup> lookups, const SimplexPoint& point) {
-  constexpr int ahead = 3;
+  constexpr int ahead = 2;
   const int components = Components ? Components : reader.components;
   const bool plain = !needs_gradient(reader, point.footprint);
   struct Candidate {
@@ -197,7 +192,6 @@ LayerValue composite_over(const LayerReader& reader, std::span<const Lookup> loo
       if (!(c.sight.alpha > 0)) continue;
       if (c.patch->mask) {
         if (!c.patch->mask->reaches(c.sight.w)) continue;
-        c.patch->mask->prefetch(c.sight.w);
       }
       if (plain) {
         const TexelGrid& grid = c.patch->source->level[0];
@@ -211,7 +205,7 @@ LayerValue composite_over(const LayerReader& reader, std::span<const Lookup> loo
       if (c.patch->mask) c.sight.alpha *= c.patch->mask->alpha(c.sight.w);
       if (!(c.sight.alpha > 0)) continue;
       if (plain)
-        sample(c.patch->source->level[0], c.patch->source->decode, c.cell, value.data());
+        sample(c.patch->source->level[0], c.cell, value.data());
       else
         read_exemplar(reader, *c.lookup, c.sight, point, false, value.data());
       ++result.lookups_read;

@@ -15,8 +15,7 @@ struct LayerReader {
 
   struct Source {
     std::vector<TexelGrid> level;    ///< finest first
-    std::vector<TexelGrid> gaussian; ///< the twins, same levels; empty without
-    DecodeTable decode;
+    std::vector<TexelGrid> gaussian; ///< the twins in standard deviations, same levels; empty without
   };
   /// A patch: exemplar coordinates are scale · w + offset (its frame, then the layer's evaluation).
   struct PatchReader {
@@ -25,13 +24,11 @@ struct LayerReader {
     const Source* source;
   };
   const Layer* layer;
-  std::vector<Source> source;                 ///< per exemplar
-  std::vector<std::vector<Exemplar>> coarser; ///< per exemplar, the mips that `level` points into
+  std::vector<Source> source; ///< per exemplar
   std::vector<MaskGrid> mask;
   std::vector<PatchReader> patch;
   std::size_t record_size = 0; ///< (width + 1) · corners
   LargeArray<float> record;    ///< per look-up, its corner rows
-  DecodeTable gaussian_decode; ///< bytes of a twin → standard deviations
   int components = 0;
   int height_component = -1; ///< of the first height channel
   bool has_directions = false;
@@ -44,10 +41,10 @@ struct LayerReader {
 struct SimplexPoint {
   std::array<float, 4> barycentric{}; ///< the fourth is 0 on a facet
   /// Gradients (1/mm) of the barycentric coordinates; on a facet tangent to it. Needed only for directions and
-  /// footprints.
-  std::array<Vec3d, 4> gradient{};
-  Vec3d normal = Vec3d::Zero(); ///< unit, of a facet
-  double footprint = 0;         ///< mm
+  /// footprints, and not set otherwise.
+  std::array<Vec3d, 4> gradient;
+  Vec3d normal;         ///< unit, of a facet; not set on a tet
+  double footprint = 0; ///< mm
 };
 
 struct LayerValue {

@@ -45,7 +45,56 @@ SimplexPoint point_on_facet(const Model& model, FacetId facet, const Vec3d& x) {
   return point;
 }
 
+/// Asks the memory for where a simplex' row is; then for the uppermost look-ups of the row.
+void prefetch_begin(const Layer& layer, std::uint32_t simplex) {
+  if (layer.simplex.empty()) __builtin_prefetch(layer.begin.data() + simplex);
+}
+void prefetch_row(const LayerReader& reader, std::span<const Lookup> row) {
+  for (std::size_t i = row.size(); i > 0 && i + 3 > row.size(); --i) {
+    __builtin_prefetch(&row[i - 1]);
+    __builtin_prefetch(reader.record.data() + (&row[i - 1] - reader.layer->lookup.data()) * reader.record_size);
+  }
+}
+
+Material& with_unit_directions(const Root::Tables& tables, Material& material) {
+  for (int first : tables.directions) {
+    float* d = material.value.data() + first;
+    const float length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    if (length > 0)
+      for (int k = 0; k < 3; ++k) d[k] /= length;
+  }
+  return material;
+}
+
 } // namespace
+
+void materials_at(const Root& root, std::span<const MaterialPoint> points, std::span<Material> result,
+                  double footprint) {
+  const Root::Tables& tables = root.tables();
+  const TetMesh& mesh = tables.model.mesh;
+  const auto each_solid_layer = [&](const auto& visit) {
+    for (const auto& entry : tables.layers)
+      if (entry.reader.layer->domain == Domain::solid) visit(entry.reader);
+  };
+  // Two steps ahead of the evaluation: where a tet's corners and look-ups are, then what they are.
+  constexpr std::size_t far = 12, near = 6;
+  for (std::size_t step = 0; step < points.size() + far; ++step) {
+    const auto hint_of = [&](std::size_t delay) {
+      const bool due = step >= delay && step - delay < points.size();
+      return due && points[step - delay].hint < mesh.tet_count() ? points[step - delay].hint : TetId();
+    };
+    if (const TetId tet = hint_of(0); tet.exists()) {
+      __builtin_prefetch(&mesh.corner[tet]);
+      __builtin_prefetch(&mesh.region[tet]);
+      each_solid_layer([&](const LayerReader& reader) { prefetch_begin(*reader.layer, tet); });
+    }
+    if (const TetId tet = hint_of(far - near); tet.exists()) {
+      for (const VertexId v : mesh.corner[tet]) __builtin_prefetch(&mesh.position[v]);
+      each_solid_layer([&](const LayerReader& reader) { prefetch_row(reader, row_of(*reader.layer, tet)); });
+    }
+    if (step >= far) result[step - far] = material_at(root, points[step - far], footprint);
+  }
+}
 
 Material material_at(const Root& root, const MaterialPoint& point, double footprint) {
   TetId hint = point.hint;
@@ -82,26 +131,23 @@ Material material_at(const Root& root, const MaterialPoint& point, const Locatio
     at.footprint = footprint;
     const LayerValue value = composite(reader, lookups, at);
     material.lookups_read += static_cast<std::uint16_t>(value.lookups_read);
-    bool all_covered = true;
+    if (value.coverage == 1 && shown_through == 1 && reader.components == tables.components) { // as is most often
+      for (int c = 0; c < reader.components; ++c) material.value[component[c]] = value.value[c];
+      material.coverage = 1;
+      return with_unit_directions(tables, material);
+    }
     for (int c = 0; c < reader.components; ++c) {
       float& below = covered[component[c]];
       material.value[component[c]] += (1 - below) * value.value[c];
       below += (1 - below) * value.coverage;
     }
-    for (int c = 0; c < tables.components; ++c) all_covered &= covered[c] >= 0.999f;
     shown_through *= 1 - value.coverage;
-    if (all_covered) break;
+    if (std::all_of(covered.begin(), covered.begin() + tables.components, [](float c) { return c >= 0.999f; })) break;
   }
   material.coverage = 1 - shown_through;
   for (int c = 0; c < tables.components; ++c)
-    if (covered[c] > 0) material.value[c] /= covered[c];
-  for (int first : tables.directions) {
-    float* d = material.value.data() + first;
-    const float length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    if (length > 0)
-      for (int k = 0; k < 3; ++k) d[k] /= length;
-  }
-  return material;
+    if (covered[c] > 0 && covered[c] != 1) material.value[c] /= covered[c];
+  return with_unit_directions(tables, material);
 }
 
 } // namespace pith

@@ -1,16 +1,33 @@
 #include "volume/layer/sample.h"
 
+#include "volume/base/parallel.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace pith {
 
-TexelGrid texel_grid(const Exemplar& exemplar, std::span<const std::uint8_t> texels) {
+TexelGrid texel_grid(const Exemplar& exemplar, std::span<const std::uint8_t> texels, const DecodeTable& decode) {
   TexelGrid grid;
-  grid.texel = texels.data();
   grid.axes = exemplar.axes;
   grid.components = exemplar.component_count();
-  std::uint32_t stride = grid.components;
+  grid.blocks = (grid.components + 3) / 4;
+  std::vector<std::array<std::uint16_t, 256>> fine(grid.components);
+  for (int c = 0; c < grid.components; ++c) {
+    const auto [least, largest] = std::minmax_element(decode[c].begin(), decode[c].end());
+    const float range = *largest - *least;
+    grid.low[c / 4][c % 4] = *least;
+    grid.step[c / 4][c % 4] = range / 65535;
+    for (int byte = 0; byte < 256; ++byte)
+      fine[c][byte] =
+          range > 0 ? static_cast<std::uint16_t>(std::lrint((decode[c][byte] - *least) / range * 65535.0)) : 0;
+  }
+  grid.texel.resize(exemplar.texel_count() * grid.blocks);
+  parallel_for(exemplar.texel_count(), 1 << 16, [&](std::size_t i) {
+    for (int c = 0; c < grid.components; ++c)
+      grid.texel[i * grid.blocks + c / 4].value[c % 4] = fine[c][texels[i * grid.components + c]];
+  });
+  std::uint32_t stride = grid.blocks;
   for (int axis = 0; axis < 4; ++axis) {
     const int n = exemplar.size[axis];
     const bool repeats = exemplar.wrap[axis] == Wrap::repeat;
@@ -22,6 +39,7 @@ TexelGrid texel_grid(const Exemplar& exemplar, std::span<const std::uint8_t> tex
     grid.before[axis] = repeats ? n - 1 : 0;
     grid.behind[axis] = repeats ? 0 : n - 1;
     stride *= n;
+    grid.any_mirror |= exemplar.wrap[axis] == Wrap::mirror;
   }
   return grid;
 }
@@ -34,58 +52,6 @@ DecodeTable decode_table(const Exemplar& exemplar) {
     for (int c = 0; c < channel.components; ++c) table.push_back(values);
   }
   return table;
-}
-
-namespace {
-
-/// The two texels along one axis, as byte offsets, and the weight of the second.
-struct Span {
-  std::uint32_t low, high;
-  float fraction;
-};
-inline Span span_of(const TexelCell& cell, int axis) {
-  return {std::uint32_t(cell.low[axis]), std::uint32_t(cell.high[axis]), cell.fraction[axis]};
-}
-
-template <int Components>
-inline void sample_square(const TexelGrid& grid, const DecodeTable& decode, const Span& x, const Span& y,
-                          std::uint32_t base, float* result) {
-  const std::uint8_t* a = grid.texel + base + y.low;
-  const std::uint8_t* b = grid.texel + base + y.high;
-  const int components = Components ? Components : grid.components;
-  const float w11 = x.fraction * y.fraction, w10 = x.fraction - w11, w01 = y.fraction - w11;
-  const float w00 = 1 - x.fraction - w01;
-  for (int c = 0; c < components; ++c) {
-    const float* value = decode[c].data();
-    result[c] = w00 * value[a[x.low + c]] + w10 * value[a[x.high + c]] + w01 * value[b[x.low + c]] +
-                w11 * value[b[x.high + c]];
-  }
-}
-
-template <int Components>
-inline void sample_cube(const TexelGrid& grid, const DecodeTable& decode, const TexelCell& cell, std::uint32_t base,
-                        float* result) {
-  const Span x = span_of(cell, 0), y = span_of(cell, 1), z = span_of(cell, 2);
-  std::array<float, Components ? Components : max_components> far;
-  const int components = Components ? Components : grid.components;
-  sample_square<Components>(grid, decode, x, y, base + z.low, result);
-  sample_square<Components>(grid, decode, x, y, base + z.high, far.data());
-  for (int c = 0; c < components; ++c) result[c] += z.fraction * (far[c] - result[c]);
-}
-
-} // namespace
-
-void sample(const TexelGrid& grid, const DecodeTable& decode, const TexelCell& cell, float* result) {
-  if (grid.axes == 2) return sample_square<0>(grid, decode, span_of(cell, 0), span_of(cell, 1), 0, result);
-  if (grid.axes == 3) {
-    if (grid.components == 3) return sample_cube<3>(grid, decode, cell, 0, result);
-    return sample_cube<0>(grid, decode, cell, 0, result);
-  }
-  const Span w = span_of(cell, 3);
-  std::array<float, max_components> far;
-  sample_cube<0>(grid, decode, cell, w.low, result);
-  sample_cube<0>(grid, decode, cell, w.high, far.data());
-  for (int c = 0; c < grid.components; ++c) result[c] += w.fraction * (far[c] - result[c]);
 }
 
 MaskGrid::MaskGrid(const Mask& mask) {

@@ -8,23 +8,34 @@
 
 namespace pith {
 
-/// One resolution of an exemplar's texels (or of its Gaussian twin), laid out for reading. One lane per axis.
+/// Four components of one texel, decoded: 0 stands for the least value that a component has, 65535 for its largest.
+/// That is 256 times finer than a byte, and interpolates as it is.
+struct FineTexel {
+  using Four = std::uint16_t __attribute__((vector_size(8)));
+  Four value;
+};
+
+/// One resolution of an exemplar's texels (or of its Gaussian twin), decoded and laid out for reading: `blocks`
+/// texels of four components each side by side. One lane per axis.
 struct TexelGrid {
-  const std::uint8_t* texel = nullptr;
   int axes = 3;
   int components = 3;
+  int blocks = 1;                       ///< (components + 3) / 4
   Lanes texels{};                       ///< along each axis
-  IntLanes stride{};                    ///< bytes from one texel to the next along each axis
+  IntLanes stride{};                    ///< FineTexels from one texel to the next along each axis
   IntLanes repeats{}, mirrors{};        ///< −1 where the axis wraps so
   IntLanes count{}, before{}, behind{}; ///< texels, and which of them lie beyond the ends
+  bool any_mirror = false;
+  std::array<Lanes, max_components / 4> low{}, step{}; ///< per block: value = low + step · number
+  LargeArray<FineTexel> texel;
 };
-TexelGrid texel_grid(const Exemplar& exemplar, std::span<const std::uint8_t> texels);
-
 /// For each component the 256 decoded values of a byte.
 using DecodeTable = std::vector<std::array<float, 256>>;
 DecodeTable decode_table(const Exemplar& exemplar);
 
-/// The texels around a position: per axis the byte offsets of the two and the weight of the second.
+TexelGrid texel_grid(const Exemplar& exemplar, std::span<const std::uint8_t> texels, const DecodeTable& decode);
+
+/// The texels around a position: per axis the offsets of the two and the weight of the second.
 struct TexelCell {
   IntLanes low, high;
   Lanes fraction;
@@ -35,10 +46,11 @@ struct TexelCell {
 inline TexelCell cell_at(const TexelGrid& grid, Lanes position) {
   constexpr float far = 1e8f; // not a number: −far
   const Lanes p = smaller_of(position > -far ? position : all_lanes(-far), all_lanes(far));
-  const Lanes repeated = p - floor_of(p), half = p - 2 * floor_of(0.5f * p + 0.5f);
-  const Lanes mirrored = half < 0 ? -half : half;
-  const Lanes clamped = smaller_of(larger_of(p, all_lanes(0)), all_lanes(1));
-  const Lanes folded = grid.repeats ? repeated : grid.mirrors ? mirrored : clamped;
+  Lanes folded = grid.repeats ? p - floor_of(p) : smaller_of(larger_of(p, all_lanes(0)), all_lanes(1));
+  if (grid.any_mirror) {
+    const Lanes half = p - 2 * floor_of(0.5f * p + 0.5f);
+    folded = grid.mirrors ? (half < 0 ? -half : half) : folded;
+  }
   const Lanes at = folded * grid.texels - 0.5f;
   const IntLanes i = __builtin_convertvector(at + 1, IntLanes) - 1; // floor: at ≥ −½
   TexelCell cell;
@@ -50,14 +62,47 @@ inline TexelCell cell_at(const TexelGrid& grid, Lanes position) {
 
 /// Asks the memory for the texels of a cell, so that they are there when sample() comes.
 inline void prefetch(const TexelGrid& grid, const TexelCell& cell) {
-  const std::uint8_t* row = grid.texel + std::uint32_t(cell.low[0]);
+  const FineTexel* row = grid.texel.data() + std::uint32_t(cell.low[0]);
   for (const std::uint32_t z : {std::uint32_t(cell.low[2]), std::uint32_t(cell.high[2])})
     for (const std::uint32_t y : {std::uint32_t(cell.low[1]), std::uint32_t(cell.high[1])})
       __builtin_prefetch(row + y + z);
 }
 
-/// result[0 … components − 1] = the decoded, interpolated values.
-void sample(const TexelGrid& grid, const DecodeTable& decode, const TexelCell& cell, float* result);
+/// The decoded, interpolated values of components 4 · block … 4 · block + 3.
+inline Lanes sample(const TexelGrid& grid, const TexelCell& cell, int block) {
+  const auto at = [&](std::uint32_t offset) {
+    return __builtin_convertvector(grid.texel[offset + block].value, Lanes);
+  };
+  const std::uint32_t x0 = cell.low[0], x1 = cell.high[0], y0 = cell.low[1], y1 = cell.high[1];
+  const float fx = cell.fraction[0], fy = cell.fraction[1];
+  const float w11 = fx * fy, w10 = fx - w11, w01 = fy - w11, w00 = 1 - fx - w01;
+  const auto square = [&](std::uint32_t base) {
+    return (w00 * at(base + y0 + x0) + w10 * at(base + y0 + x1)) +
+           (w01 * at(base + y1 + x0) + w11 * at(base + y1 + x1));
+  };
+  const auto cube = [&](std::uint32_t base) {
+    const Lanes first = square(base + cell.low[2]);
+    return first + cell.fraction[2] * (square(base + cell.high[2]) - first);
+  };
+  Lanes number;
+  if (grid.axes == 3) {
+    number = cube(0);
+  } else if (grid.axes == 2) {
+    number = square(0);
+  } else {
+    const Lanes first = cube(cell.low[3]);
+    number = first + cell.fraction[3] * (cube(cell.high[3]) - first);
+  }
+  return grid.low[block] + grid.step[block] * number;
+}
+
+/// result[0 … components − 1] = all values.
+inline void sample(const TexelGrid& grid, const TexelCell& cell, float* result) {
+  for (int block = 0; block < grid.blocks; ++block) {
+    const Lanes values = sample(grid, cell, block);
+    for (int c = 0; c < std::min(4, grid.components - 4 * block); ++c) result[4 * block + c] = values[c];
+  }
+}
 
 /// A mask laid out for reading: with one more texel along each axis, a repetition, so that the eight around a place
 /// lie in four pairs.
@@ -69,12 +114,6 @@ public:
   bool reaches(Lanes position) const {
     const IntLanes in = (position >= low_) & (position <= high_);
     return (in[0] & in[1] & in[2]) != 0;
-  }
-  /// Asks the memory for what alpha() will read.
-  void prefetch(Lanes position) const {
-    const std::uint8_t* cell = alpha_.data() + index_of(__builtin_convertvector(inside_of(position), IntLanes));
-    __builtin_prefetch(cell);
-    __builtin_prefetch(cell + slice_);
   }
   /// In [0, 1], interpolated linearly.
   float alpha(Lanes position) const {

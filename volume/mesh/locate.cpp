@@ -25,8 +25,6 @@ bool closed_contains(const TetMesh& mesh, TetId tet, const Vec3d& x) {
   return true;
 }
 
-double determinant(const Vec3d& u, const Vec3d& v, const Vec3d& w) { return u.dot(v.cross(w)); }
-
 /// Six times the volumes of the four tets that x makes with the facets, and a bound below which rounding may have
 /// changed a sign: the determinants' errors are below 2e-15 of the cube of the largest coordinate difference.
 struct Volumes {
@@ -39,8 +37,8 @@ inline Volumes volumes_of(const TetMesh& mesh, TetId tet, const Vec3d& x) {
   const Vec3d a = mesh.position[c[0]] - x, b = mesh.position[c[1]] - x;
   const Vec3d d = mesh.position[c[2]] - x, e = mesh.position[c[3]] - x;
   const double reach = a.cwiseAbs().cwiseMax(b.cwiseAbs()).cwiseMax(d.cwiseAbs().cwiseMax(e.cwiseAbs())).maxCoeff();
-  return {{determinant(b, d, e), -determinant(a, d, e), determinant(a, b, e), -determinant(a, b, d)},
-          1e-14 * reach * reach * reach};
+  const Vec3d de = d.cross(e), ab = a.cross(b);
+  return {{b.dot(de), -a.dot(de), e.dot(ab), -d.dot(ab)}, 1e-14 * reach * reach * reach};
 }
 
 inline std::array<double, 4> normalized(const std::array<double, 4>& w) {
