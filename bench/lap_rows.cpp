@@ -21,7 +21,7 @@ LapResult filled(const BuiltRecipe& built) {
               .region = solid.region,
               .axes = frames.axes,
               .scale = frames.scale,
-              .depth = depth.value,
+              .coordinate = {{{}, depth.value, {}}},
               .singular = frames.singular},
              model.layer.at(0).exemplar.at(0), solid.fill);
 }

@@ -171,13 +171,13 @@ TEST(Frames, RefuseStrokesThatDoNotServe) {
   Bar bar;
   const auto expect = [&](const std::vector<AxisStroke>& strokes, const std::string& part) {
     const std::string message = bar.refusal(strokes);
-    EXPECT_EQ(message.rfind("fields.axis", 0), 0u) << message;
+    EXPECT_EQ(message.rfind("fields.axis/orientation", 0), 0u) << message;
     EXPECT_NE(message.find(part), std::string::npos) << message;
   };
   const AxisStroke good{.point = {{0.5, 4, 2}, {0.5, 4, 18}}};
   EXPECT_EQ(bar.refusal({good}), "");
   expect({}, "no stroke");
-  expect({good, {.point = {{1, 1, 1}}}}, "fields.axis[1]: a stroke of 1 points has no length");
+  expect({good, {.point = {{1, 1, 1}}}}, "fields.axis/orientation/1: a stroke of 1 points has no length");
   expect({{.point = {{1, 1, 1}, {NAN, 1, 1}}}}, "not finite");
   expect({{.point = {{50, 1, 1}, {60, 1, 1}}}}, "none of its 1 strokes touches region 0");
   for (Vec3d& g : bar.depth.gradient) g = {0, 0, 0.1};

@@ -17,7 +17,14 @@ struct KiwiSolid {
   FrameField frames;
   Exemplar exemplar;
 
-  LapInput input() const { return {mesh, boundary, 0, frames.axes, frames.scale, depth.value, frames.singular}; }
+  LapInput input() const {
+    return {.mesh = mesh,
+            .boundary = boundary,
+            .axes = frames.axes,
+            .scale = frames.scale,
+            .coordinate = {{{}, depth.value, {}}},
+            .singular = frames.singular};
+  }
 };
 
 inline KiwiSolid kiwi_solid(int triangles = 1426, double interior_edge = 7.5) {

@@ -125,7 +125,7 @@ TEST_F(Fill, RefusesWhatDoesNotFit) {
   clamped.wrap[0] = Wrap::clamp;
   EXPECT_THROW(lap(solid->input(), clamped), InvalidInput);
   LapInput no_depth = solid->input();
-  no_depth.depth = {};
+  no_depth.coordinate = {};
   EXPECT_THROW(lap(no_depth, solid->exemplar), InvalidInput);
   LapInput no_frames = solid->input();
   no_frames.axes = {};
@@ -142,7 +142,7 @@ TEST(Grow, OnConstantFramesTheMapIsTheFrameAndTheClumpIsTheMask) {
   const std::vector<float> scale(mesh.tet_count(), 4.0f);
   SplotchOptions splotch;
   const Mask mask = splotch_mask(splotch);
-  GrowField field{axes, scale, {}, {}};
+  GrowField field{.frames = {.axes = axes}, .scale = scale};
   field.extent.fill(splotch_extent(splotch, SplotchPart::whole));
   std::uint32_t seed = 0;
   for (TetId t : all_ids<TetId>(mesh.tet_count()))
@@ -150,8 +150,8 @@ TEST(Grow, OnConstantFramesTheMapIsTheFrameAndTheClumpIsTheMask) {
         (barycenter(mesh, TetId(seed)) - Vec3d(3.5, 3.5, 3.5)).norm())
       seed = t;
   GrowWorkspace workspace;
-  const Growth growth =
-      grow(simplices, field, mask, seed, {0.5, 0.5, 0.5}, {0.25f, 0.25f, 0.25f, 0.25f}, {}, workspace);
+  const Growth growth = grow(simplices, field, mask, seed, {0.5, 0.5, 0.5}, {0.25f, 0.25f, 0.25f, 0.25f},
+                             {.seed_frame = frame}, workspace);
   const Vec3d center = barycenter(mesh, TetId(seed));
   for (std::size_t v = 0; v < growth.clump.vertex.size(); ++v) {
     const Vec3d expected = Vec3d::Constant(0.5) + frame.transpose() *

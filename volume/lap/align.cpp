@@ -39,11 +39,12 @@ const std::uint8_t* nearest_texel(const Exemplar& e, const std::array<float, 3>&
 }
 
 /// Weighted squared difference of a phase.
-double difference(const Exemplar& e, const std::vector<Meeting>& meetings, float x, float z, double give_up) {
+double difference(const Exemplar& e, const std::vector<Meeting>& meetings, const std::array<float, 3>& phase,
+                  double give_up) {
   const int components = e.component_count();
   double sum = 0;
   for (const Meeting& m : meetings) {
-    const std::uint8_t* texel = nearest_texel(e, {m.w[0] + x, m.w[1], m.w[2] + z});
+    const std::uint8_t* texel = nearest_texel(e, {m.w[0] + phase[0], m.w[1] + phase[1], m.w[2] + phase[2]});
     float squared = 0;
     for (int c = 0; c < components; ++c) squared += (texel[c] - m.color[c]) * (texel[c] - m.color[c]);
     sum += m.weight * squared;
@@ -57,7 +58,7 @@ double difference(const Exemplar& e, const std::vector<Meeting>& meetings, float
 Aligner::Aligner(const Exemplar& exemplar) : coarse_(reduced(exemplar, 16)), fine_(reduced(exemplar, 64)) {}
 
 std::array<float, 4> Aligner::phase(const Pastes& pastes, const Simplices& mesh, const Paste& paste,
-                                    const std::array<float, 4>& random) const {
+                                    const std::array<bool, 3>& free, const std::array<float, 4>& random) const {
   if (coarse_.axes != 3) return random;
   const Clump& clump = paste.growth.clump;
   const MaskGrid& mask = pastes.grids()[paste.patch.mask];
@@ -104,28 +105,34 @@ std::array<float, 4> Aligner::phase(const Pastes& pastes, const Simplices& mesh,
   }
 
   // Every coarse texel of phase, from the random start on (so that ties are broken at random), then finer steps.
-  const bool x_repeats = coarse_.wrap[0] == Wrap::repeat, z_repeats = coarse_.wrap[2] == Wrap::repeat;
-  std::array<float, 4> best = random;
+  std::array<float, 3> best{random[0], random[1], random[2]};
   double least = std::numeric_limits<double>::infinity();
-  const auto attempt = [&](const Exemplar& e, float x, float z) {
-    const double d = difference(e, meetings, x, z, least);
+  const auto attempt = [&](const Exemplar& e, const std::array<float, 3>& phase) {
+    const double d = difference(e, meetings, phase, least);
     if (d < least) {
       least = d;
-      best[0] = x;
-      best[2] = z;
+      best = phase;
     }
   };
-  const float x_step = 1.0f / coarse_.size[0], z_step = 1.0f / coarse_.size[2];
-  for (int k = 0; k < (z_repeats ? coarse_.size[2] : 1); ++k)
-    for (int i = 0; i < (x_repeats ? coarse_.size[0] : 1); ++i)
-      attempt(coarse_, random[0] + i * x_step, random[2] + k * z_step);
+  /// Calls with start + step · (i, j, k) for low ≤ i, j, k < high along free axes.
+  const auto attempt_all = [&](const Exemplar& e, std::array<float, 3> start, std::array<float, 3> step,
+                               std::array<int, 3> low, std::array<int, 3> high) {
+    for (int a = 0; a < 3; ++a)
+      if (!free[a]) low[a] = 0, high[a] = 1;
+    for (int k = low[2]; k < high[2]; ++k)
+      for (int j = low[1]; j < high[1]; ++j)
+        for (int i = low[0]; i < high[0]; ++i)
+          attempt(e, {start[0] + i * step[0], start[1] + j * step[1], start[2] + k * step[2]});
+  };
+  std::array<float, 3> step;
+  for (int a = 0; a < 3; ++a) step[a] = 1.0f / coarse_.size[a];
+  attempt_all(coarse_, best, step, {0, 0, 0}, {coarse_.size[0], coarse_.size[1], coarse_.size[2]});
   least = std::numeric_limits<double>::infinity();
-  const std::array<float, 4> center = best;
-  for (int k = z_repeats ? -3 : 0; k <= (z_repeats ? 3 : 0); ++k)
-    for (int i = x_repeats ? -3 : 0; i <= (x_repeats ? 3 : 0); ++i)
-      attempt(fine_, center[0] + i * x_step / 4, center[2] + k * z_step / 4);
-  for (int a : {0, 2}) best[a] -= std::floor(best[a]);
-  return best;
+  attempt_all(fine_, best, {step[0] / 4, step[1] / 4, step[2] / 4}, {-3, -3, -3}, {4, 4, 4});
+  std::array<float, 4> phase = random;
+  for (int a = 0; a < 3; ++a)
+    if (free[a]) phase[a] = best[a] - std::floor(best[a]);
+  return phase;
 }
 
 } // namespace pith

@@ -11,9 +11,10 @@ class Aligner {
 public:
   explicit Aligner(const Exemplar& exemplar);
 
-  /// Offsets of patch.frame along the repeating axes; `random` stands in where the paste meets nothing yet.
+  /// Offsets of patch.frame along the axes that are `free`, which repeat; `random` stands in where the paste meets
+  /// nothing yet, and along the others.
   std::array<float, 4> phase(const Pastes& pastes, const Simplices& mesh, const Paste& paste,
-                             const std::array<float, 4>& random) const;
+                             const std::array<bool, 3>& free, const std::array<float, 4>& random) const;
 
 private:
   Exemplar coarse_, fine_;

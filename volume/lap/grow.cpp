@@ -26,9 +26,9 @@ public:
   Grower(const Simplices& mesh, const GrowField& field, const Mask& mask, std::uint32_t seed,
          const std::array<double, 3>& pin, const std::array<float, 4>& at, const GrowRule& rule,
          GrowWorkspace& workspace)
-      : mesh_(mesh), field_(field), mask_(mask), rule_(rule), workspace_(workspace), seed_axes_(field.axes[seed]),
-        seed_scale_(field.scale[seed]), pin_(pin), pin_at_(at),
-        smallest_trace_(1 + 2 * std::cos(rule.frame_tolerance)) {
+      : mesh_(mesh), field_(field), mask_(mask), rule_(rule), workspace_(workspace),
+        frames_(field.frames, rule.seed_frame), seed_scale_(field.scale[seed]), pin_(pin), pin_at_(at),
+        smallest_cosine_(std::cos(rule.frame_tolerance)) {
     workspace_.begin(mesh.count, mesh.vertex_count);
     Clump& clump = growth_.clump;
     clump.axes = mask.axes;
@@ -37,7 +37,7 @@ public:
     for (int i = 0; i < mesh_.corners; ++i) center += at[i] * position(corner(seed, i));
     for (int i = 0; i < mesh_.corners; ++i) {
       const std::uint32_t v = corner(seed, i);
-      for (int a = 0; a < clump.axes; ++a) set_coordinate(v, a, pin[a] + target(0, a).dot(position(v) - center));
+      for (int a = 0; a < clump.axes; ++a) set_coordinate(v, a, pin[a] + target_[0].col(a).dot(position(v) - center));
     }
   }
 
@@ -62,27 +62,29 @@ private:
     return mesh_.corner[std::size_t(simplex) * mesh_.corners + i];
   }
   const Vec3d& position(std::uint32_t vertex) const { return mesh_.position[vertex]; }
-  bool imposed(int axis) const { return axis == 1 && !field_.depth.empty(); }
+  bool imposed(int axis) const { return !field_.coordinate[axis].empty(); }
 
   void set_coordinate(std::uint32_t vertex, int axis, double value) {
     growth_.clump.coordinate[workspace_.local_vertex(vertex) * growth_.clump.axes + axis] =
-        imposed(axis) ? field_.depth[vertex] : value;
+        imposed(axis) ? field_.coordinate[axis][vertex] : value;
   }
 
-  /// The gradient that coordinate `axis` should have on clump simplex `local`: its frame's axis over its scale, or
-  /// the seed's where the simplex' own frame does not count.
-  Vec3d target(std::uint32_t local, int axis) const {
-    const std::uint32_t s = growth_.clump.simplex[local];
-    return growth_.clump.confidence[local] == 1
-               ? Vec3d(field_.axes[s].col(axis) / (field_.scale[s] * field_.extent[axis]))
-               : Vec3d(seed_axes_.col(axis) / (seed_scale_ * field_.extent[axis]));
+  /// The gradients (columns) that the coordinates should have on a simplex: its frame's axes over its scale, or the
+  /// seed's where the simplex' own frame does not count.
+  Mat3d target(std::uint32_t s, bool follows) const {
+    Mat3d gradient = follows ? frames_.at(s) : frames_.seed();
+    const double scale = follows ? field_.scale[s] : seed_scale_;
+    for (int a = 0; a < 3; ++a) gradient.col(a) /= scale * field_.extent[a];
+    return gradient;
   }
 
   void add_simplex(std::uint32_t s) {
     Clump& clump = growth_.clump;
     workspace_.set_simplex(s, static_cast<std::uint32_t>(clump.simplex.size()));
     clump.simplex.push_back(s);
-    clump.confidence.push_back(follows_seed(s) ? 1.0f : little_confidence);
+    const bool follows = follows_seed(s);
+    clump.confidence.push_back(follows ? 1.0f : little_confidence);
+    target_.push_back(target(s, follows));
     for (int i = 0; i < mesh_.corners; ++i) {
       const std::uint32_t v = corner(s, i);
       std::uint32_t local = workspace_.local_vertex(v);
@@ -96,18 +98,17 @@ private:
     }
   }
 
-  /// The angle between two frames is that of the rotation between them: trace = 1 + 2 cos.
   bool follows_seed(std::uint32_t s) const {
-    return (field_.axes[s].transpose() * seed_axes_).trace() >= smallest_trace_;
+    const double ratio = field_.scale[s] / seed_scale_;
+    return frames_.cosine(s) >= smallest_cosine_ && ratio <= rule_.scale_tolerance &&
+           ratio * rule_.scale_tolerance >= 1;
   }
 
   /// Coordinates of all corners of a simplex beside the clump: known ones, and for a new corner the mean of what its
   /// frame predicts from the known ones (cf. Praun 2000, "predicted positions").
   void predict(std::uint32_t s, std::array<std::array<double, 3>, 4>& w) const {
     const int axes = growth_.clump.axes;
-    const bool follows = follows_seed(s);
-    const Mat3d& frame = follows ? field_.axes[s] : seed_axes_;
-    const double scale = follows ? field_.scale[s] : seed_scale_;
+    const Mat3d gradient = target(s, follows_seed(s));
     std::array<std::uint32_t, 4> local{};
     for (int i = 0; i < mesh_.corners; ++i) local[i] = workspace_.local_vertex(corner(s, i));
     for (int i = 0; i < mesh_.corners; ++i) {
@@ -122,10 +123,9 @@ private:
         ++known;
         const Vec3d step = position(corner(s, i)) - position(corner(s, j));
         for (int a = 0; a < axes; ++a)
-          w[i][a] +=
-              growth_.clump.coordinate[local[j] * axes + a] + frame.col(a).dot(step) / (scale * field_.extent[a]);
+          w[i][a] += growth_.clump.coordinate[local[j] * axes + a] + gradient.col(a).dot(step);
       }
-      for (int a = 0; a < axes; ++a) w[i][a] = imposed(a) ? field_.depth[corner(s, i)] : w[i][a] / known;
+      for (int a = 0; a < axes; ++a) w[i][a] = imposed(a) ? field_.coordinate[a][corner(s, i)] : w[i][a] / known;
     }
   }
 
@@ -167,7 +167,7 @@ private:
     std::vector<Vec3d> targets(clump.simplex.size() * axes);
     std::vector<double> weight(clump.simplex.size());
     for (std::uint32_t s = 0; s < clump.simplex.size(); ++s) {
-      for (int a = 0; a < axes; ++a) targets[s * axes + a] = target(s, a);
+      for (int a = 0; a < axes; ++a) targets[s * axes + a] = target_[s].col(a);
       const double scale = field_.scale[clump.simplex[s]];
       weight[s] = mesh_.measure[clump.simplex[s]] * clump.confidence[s] * scale * scale;
     }
@@ -204,11 +204,12 @@ private:
   const Mask& mask_;
   const GrowRule& rule_;
   GrowWorkspace& workspace_;
-  Mat3d seed_axes_;
+  PasteFrames frames_;
   double seed_scale_;
   std::array<double, 3> pin_;
   std::array<float, 4> pin_at_;
-  double smallest_trace_;
+  double smallest_cosine_;
+  std::vector<Mat3d> target_; ///< per clump simplex
   Growth growth_;
 };
 

@@ -1,22 +1,28 @@
 #pragma once
 // Growing a clump of simplices around a seed while they follow the seed's frame and lie under the mask
 // (Takayama 2008, §5.2.4; Praun 2000, §3).
+#include "volume/lap/paste_frames.h"
 #include "volume/lap/warp.h"
 #include "volume/layer/mask.h"
 
+#include <limits>
+
 namespace pith {
 
-/// The frames that a paste follows.
+/// What pastes follow.
 struct GrowField {
-  std::span<const Mat3d> axes;           ///< per simplex: unit columns, one per texture axis
+  FrameSource frames;
   std::span<const float> scale;          ///< per simplex: mm per texture width
   std::array<double, 3> extent{1, 1, 1}; ///< texture widths that the mask's unit cube spans along each axis
-  std::span<const float> depth; ///< per vertex: becomes coordinate 1 as it is; empty: all coordinates are solved for
+  /// Per vertex: becomes that coordinate as it is (extent 1); empty: the coordinate is solved for.
+  std::array<std::span<const float>, 3> coordinate{};
 };
 
 struct GrowRule {
-  double frame_tolerance = 1.1; ///< radians; simplices that turn further from the seed's frame are left out
-  bool through = false;         ///< take them all the same, with little confidence (singular places)
+  Mat3d seed_frame = Mat3d::Identity(); ///< the seed's, of seed_frame()
+  double frame_tolerance = 1.1;         ///< radians; simplices that turn further from the seed's frame are left out
+  double scale_tolerance = std::numeric_limits<double>::infinity(); ///< and those whose scale differs by this factor
+  bool through = false; ///< take them all the same, with little confidence (singular places)
 };
 
 /// Memory that is used again from paste to paste: which simplices and vertices are in the clump.

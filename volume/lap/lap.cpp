@@ -9,6 +9,7 @@
 
 #include "volume/base/error.h"
 #include "volume/base/random.h"
+#include "volume/lap/affine_layer.h"
 #include "volume/lap/align.h"
 #include "volume/lap/pastes.h"
 
@@ -22,28 +23,58 @@ namespace {
 
 constexpr std::uint64_t stage = 0x1a9; // of random numbers
 
-void check(const LapInput& input, const Exemplar& exemplar, const LapOptions& options) {
-  const std::size_t tets = input.mesh.tet_count();
-  if (input.axes.size() != tets || input.scale.size() != tets)
-    throw InvalidInput(
-        "fill", "was given frames for " + std::to_string(input.axes.size()) + " of " + std::to_string(tets) + " tets",
-        "make frames for the whole mesh first");
-  validate(exemplar);
-  const std::string where = "exemplar '" + exemplar.name + "'";
-  if (exemplar.axes != 3) throw InvalidInput(where, "is not a volume", "a solid is filled from a volume of 3 axes");
-  for (int axis : {0, 2})
-    if (exemplar.wrap[axis] != Wrap::repeat)
-      throw InvalidInput(where, "does not repeat along axis " + std::to_string(axis),
-                         "types 2-a and 2-b need wrap 'repeat' along axes 0 and 2");
-  if (options.type == TextureType::tensor_2b && input.depth.size() != input.mesh.vertex_count())
-    throw InvalidInput("fill", "has no depth field", "give the region depth constraints, or choose type 2-a");
-  if (options.type == TextureType::tensor_2a && exemplar.wrap[1] != Wrap::repeat)
-    throw InvalidInput(where, "does not repeat along axis 1", "type 2-a needs wrap 'repeat' along all axes");
+[[noreturn]] void refuse_length(const LapInput& input, const std::string& what, std::size_t have, std::size_t need,
+                                const std::string& of) {
+  throw InvalidInput(input.where,
+                     "was given " + what + " for " + std::to_string(have) + " of " + std::to_string(need) + " " + of,
+                     "make " + what + " for the whole mesh first");
 }
 
-/// Outer, middle and inner masks (Fig. 14) where the texture varies with depth.
+void check(const LapInput& input, const Exemplar& exemplar, const LapOptions& options) {
+  const TextureTraits& traits = traits_of(options.type);
+  const std::string type = std::string("type ") + traits.name;
+  const std::size_t tets = input.mesh.tet_count(), vertices = input.mesh.vertex_count();
+  const std::string where = input.where + "/exemplar";
+  validate(exemplar);
+  if (exemplar.axes != 3)
+    throw InvalidInput(where, "'" + exemplar.name + "' is not a volume", "a solid is filled from a volume of 3 axes");
+  constexpr const char* field_name[3] = {"around", "depth", "along"};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (traits.imposed[axis]) {
+      if (input.coordinate[axis].empty())
+        throw InvalidInput(input.where + "/" + field_name[axis],
+                           "is missing: " + type + " takes its coordinate " + axis_letter(axis) + " from it",
+                           "give it two places and their values, or choose another type");
+      if (input.coordinate[axis].size() != vertices)
+        refuse_length(input, field_name[axis], input.coordinate[axis].size(), vertices, "vertices");
+    } else if (exemplar.wrap[axis] != Wrap::repeat) {
+      throw InvalidInput(where,
+                         "'" + exemplar.name + "' does not repeat along axis " + std::to_string(axis) + " (" +
+                             axis_letter(axis) + "), along which " + type + " tiles",
+                         "take an exemplar with wrap \"repeat\" there, or a type in which \"" +
+                             std::string(field_name[axis]) + "\" is that coordinate (" +
+                             (axis == 1   ? "1-b, 2-b"
+                              : axis == 2 ? "2-c, 2-d"
+                                          : "2-d") +
+                             ")");
+    }
+  }
+  if (traits.imposed[0] && traits.imposed[1] && traits.imposed[2]) return;
+  if (traits.fixed_axes > 0 && input.axes.size() != tets)
+    refuse_length(input, "frames", input.axes.size(), tets, "tets");
+  if (input.scale.size() != tets) refuse_length(input, "scales", input.scale.size(), tets, "tets");
+  for (const TetId t : all_ids<TetId>(tets))
+    if (input.mesh.region[t] == input.region && !(input.scale[t] > 0 && std::isfinite(input.scale[t])))
+      throw InvalidInput(input.where + "/scale", "is " + std::to_string(input.scale[t]) + " mm in some tet",
+                         "give millimetres per texture width, above 0");
+}
+
+/// Outer, middle and inner masks (Fig. 14) along depth, where that is a coordinate: the scale follows the thickness,
+/// so that no piece fits both skin and core. Along a further coordinate the scale hardly changes, and as the texture
+/// is in place there whatever the piece, pieces need no end: type 2-c pastes sheets, whose only seams run along S and
+/// T.
 std::vector<SplotchPart> parts_of(TextureType type) {
-  if (type == TextureType::tensor_2b) return {SplotchPart::outer, SplotchPart::middle, SplotchPart::inner};
+  if (traits_of(type).imposed[1]) return {SplotchPart::outer, SplotchPart::middle, SplotchPart::inner};
   return {SplotchPart::whole};
 }
 
@@ -55,6 +86,7 @@ std::vector<Mask> masks_of(const LapOptions& options) {
       SplotchOptions splotch = options.splotch;
       splotch.axes = 3;
       splotch.variation_axis = 1;
+      splotch.endless_axis = traits_of(options.type).imposed[2] ? 2 : -1;
       splotch.seed = hash_of(options.seed, stage, variant, splotch.seed);
       masks.push_back(splotch_mask(splotch, part));
     }
@@ -70,12 +102,16 @@ std::uint64_t priority_of(const Vec3d& place, std::uint64_t seed) {
 class Filler {
 public:
   Filler(const LapInput& input, const Exemplar& exemplar, const LapOptions& options)
-      : input_(input), options_(options), mesh_(simplices_of(input.mesh, input.region)),
-        pastes_(mesh_, coverage(), masks_of(options)), aligner_(exemplar), attempts_(mesh_.count, 0),
-        workspace_(most_seeds) {
-    field_.axes = input.axes;
+      : input_(input), options_(options), traits_(traits_of(options.type)),
+        mesh_(simplices_of(input.mesh, input.region)), pastes_(mesh_, coverage(), masks_of(options)),
+        aligner_(exemplar), attempts_(mesh_.count, 0), workspace_(most_seeds) {
+    field_.frames = {.axes = input.axes,
+                     .fixed_axes = traits_.fixed_axes,
+                     .fixed_axis = traits_.fixed_axis,
+                     .unsigned_axis = input.unsigned_axis && traits_.uses_stroke};
     field_.scale = input.scale;
-    if (options.type == TextureType::tensor_2b) field_.depth = input.depth;
+    for (int a = 0; a < 3; ++a)
+      if (traits_.imposed[a]) field_.coordinate[a] = input.coordinate[a];
     for (std::uint32_t s = 0; s < mesh_.count; ++s)
       if (pastes_.coverage().open(s)) queue_.push_back(s);
     std::vector<std::uint64_t> priority(mesh_.count);
@@ -148,10 +184,11 @@ private:
       if (pastes_.count() > before) shares_.push_back(pastes[i].share_used);
       if (pastes_.coverage().open(seeds[i]) && ++attempts_[seeds[i]] > options_.max_attempts) {
         const Vec3d& at = mesh_.center[seeds[i]];
-        throw SolverFailure("fill: the tet near (" + std::to_string(at.x()) + ", " + std::to_string(at.y()) + ", " +
-                                std::to_string(at.z()) + ") stays uncovered after " +
+        throw SolverFailure(input_.where + ": the tet near (" + std::to_string(at.x()) + ", " +
+                                std::to_string(at.y()) + ", " + std::to_string(at.z()) + ") stays uncovered after " +
                                 std::to_string(attempts_[seeds[i]]) +
-                                " pastes; make the tets smaller than the texture (tetrahedralize/interior_edge)",
+                                " pastes; make the tets smaller than the texture (tetrahedralize/interior_edge)" +
+                                (traits_.uses_scale ? ", or the texture larger (scale)" : ""),
                             *std::max_element(pastes_.coverage().shining(seeds[i]).begin(),
                                               pastes_.coverage().shining(seeds[i]).end()));
       }
@@ -162,31 +199,38 @@ private:
     Paste paste;
     paste.patch.key = hash_of(priority_of(mesh_.center[seed], options_.seed), attempts_[seed]);
     const std::array<float, 4> at = open_point(seed);
-    std::array<double, 3> pin{0.5, 0.5, 0.5};
-    int part = 0;
-    if (!field_.depth.empty()) {
-      pin[1] = 0; // (½, d_seed, ½), §5.2.7
-      for (int i = 0; i < 4; ++i) pin[1] += at[i] * field_.depth[mesh_.corner[4 * std::size_t(seed) + i]];
-      part = pin[1] < 0.2 ? 0 : pin[1] > 0.83 ? 2 : 1;
+    std::array<double, 3> pin{0.5, 0.5, 0.5}; // (½, d_seed, ½) where depth is a coordinate, §5.2.7
+    for (int a = 0; a < 3; ++a) {
+      if (!traits_.imposed[a]) continue;
+      pin[a] = 0;
+      for (int i = 0; i < 4; ++i) pin[a] += at[i] * field_.coordinate[a][mesh_.corner[4 * std::size_t(seed) + i]];
     }
+    const int part = !traits_.imposed[1] ? 0 : pin[1] < 0.2 ? 0 : pin[1] > 0.83 ? 2 : 1;
     GrowField field = field_;
     field.extent.fill(splotch_extent(options_.splotch, parts_of(options_.type)[part]));
-    if (!field.depth.empty()) field.extent[1] = 1;
-    for (int a = 0; a < 3; ++a) paste.patch.frame.scale[a] = static_cast<float>(field.extent[a]);
+    for (int a = 0; a < 3; ++a) {
+      if (traits_.imposed[a]) field.extent[a] = 1;
+      paste.patch.frame.scale[a] = static_cast<float>(field.extent[a]);
+    }
     Random random(paste.patch.key);
     paste.patch.mask = part * options_.mask_variants + random.below(options_.mask_variants);
 
     // A seed that its paste failed to cover is tried again with more freedom: first a wider tolerance, then none.
     GrowRule rule;
+    rule.seed_frame = seed_frame(field.frames, seed, random);
     rule.frame_tolerance = options_.frame_tolerance * (attempts_[seed] > 0 ? 1.5 : 1);
-    rule.through = attempts_[seed] > 1 || part == 2; // the innermost holds the axis, where frames turn all around
+    if (traits_.uses_scale) rule.scale_tolerance = options_.scale_tolerance * (attempts_[seed] > 0 ? 1.5 : 1);
+    // The innermost holds the axis, where frames turn all around.
+    rule.through = attempts_[seed] > 1 || (traits_.imposed[1] && part == 2);
     paste.growth = grow(mesh_, field, pastes_.masks()[paste.patch.mask], seed, pin, at, rule, workspace);
     pastes_.look(paste);
+    std::array<bool, 3> free{};
     std::array<float, 4> phase{};
-    phase[0] = static_cast<float>(random.uniform());
-    phase[2] = static_cast<float>(random.uniform());
-    if (field_.depth.empty()) phase[1] = static_cast<float>(random.uniform());
-    paste.patch.frame.offset = options_.align ? aligner_.phase(pastes_, mesh_, paste, phase) : phase;
+    for (int a : {0, 2, 1}) {
+      free[a] = !traits_.imposed[a];
+      if (free[a]) phase[a] = static_cast<float>(random.uniform());
+    }
+    paste.patch.frame.offset = options_.align ? aligner_.phase(pastes_, mesh_, paste, free, phase) : phase;
     return paste;
   }
 
@@ -215,6 +259,7 @@ private:
 
   const LapInput& input_;
   const LapOptions& options_;
+  const TextureTraits& traits_;
   Simplices mesh_;
   Pastes pastes_;
   Aligner aligner_;
@@ -230,7 +275,9 @@ private:
 
 LapResult lap(const LapInput& input, const Exemplar& exemplar, const LapOptions& options, const Progress& progress) {
   check(input, exemplar, options);
-  LapResult result = Filler(input, exemplar, options).run(progress);
+  LapResult result = options.type == TextureType::tensor_2d
+                         ? LapResult{.layer = affine_layer(input), .statistics = {}}
+                         : Filler(input, exemplar, options).run(progress);
   result.layer.name = exemplar.name;
   result.layer.exemplar.push_back(exemplar);
   return result;

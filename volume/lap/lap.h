@@ -2,6 +2,7 @@
 // Lapped solid textures: fills a solid by pasting overlapping pieces of a solid exemplar along its frames
 // (Takayama, Okabe, Ijiri, Igarashi: Lapped Solid Textures, SIGGRAPH 2008).
 #include "volume/base/parallel.h"
+#include "volume/lap/texture_type.h"
 #include "volume/layer/layer.h"
 #include "volume/layer/mask.h"
 #include "volume/mesh/boundary.h"
@@ -12,29 +13,28 @@
 
 namespace pith {
 
-/// Kinds of texture by anisotropy (0–2) and variation (a: none, b: along depth), §3.
-enum class TextureType {
-  tensor_2a, ///< three different axes, the same everywhere
-  tensor_2b  ///< three different axes, changing along depth, which is the texture's second coordinate
-};
-
 /// Where and along what to paste. Spans are over all tets or vertices of the mesh; only `region` is filled.
 struct LapInput {
   const TetMesh& mesh;
   const Boundary& boundary;
   std::int32_t region = 0;
-  std::span<const Mat3d> axes;            ///< per tet: columns R, S, T, unit
-  std::span<const float> scale;           ///< per tet: mm per texture width
-  std::span<const float> depth;           ///< per vertex, 0 … 1 (types that vary with depth)
-  std::span<const std::uint8_t> singular; ///< per tet; may be empty
+  std::span<const Mat3d> axes;  ///< per tet: columns R, S, T, unit; may be empty for types 0 and 2-d
+  std::span<const float> scale; ///< per tet: mm per texture width; may be empty for type 2-d
+  /// Per vertex, 0 … 1: the scalar fields that are texture coordinates R, S, T where the type imposes them
+  /// (TextureTraits::imposed): depth is coordinate 1. Others are not read.
+  std::array<std::span<const float>, 3> coordinate{};
+  std::span<const std::uint8_t> singular{}; ///< per tet; may be empty
+  bool unsigned_axis = false;               ///< the strokes' axis has no sign: the texture is alike along T and −T
+  std::string where = "fill";               ///< what messages call the solid: its entry in the recipe
 };
 
 struct LapOptions {
   TextureType type = TextureType::tensor_2b;
   std::uint64_t seed = 1;
-  SplotchOptions splotch;
+  SplotchOptions splotch{};
   int mask_variants = 3;        ///< splotches of different outline for each part
   double frame_tolerance = 0.8; ///< largest angle between a tet's axes and the seed's, radians (§5.2.4)
+  double scale_tolerance = 1.5; ///< largest ratio of their scales, where these are given (types 0, 1-a, 2-a)
   double sample_spacing = 0.03; ///< of the coverage test, in texture widths
   int coverage_order = 8;       ///< most samples per tet edge in that test: order 8 gives the paper's 165 points
   bool align = true;     ///< choose each paste's phase so that it continues what is already there; false: at random
@@ -54,9 +54,11 @@ struct LapResult {
 };
 
 /// Fills a region. The result is the same for any number of threads. Errors: InvalidInput when the exemplar does not
-/// fit the type or spans have the wrong length; SolverFailure when some tet cannot be covered; Cancelled. Departures
-/// from the paper: new pastes go beneath the older ones, so that a look-up that nothing can see is never made (the
-/// picture is as the paper's with the order reversed); the fill runs in parallel rounds.
+/// fit the type (it must repeat along the axes that are not imposed) or spans have the wrong length; SolverFailure
+/// when some tet cannot be covered; Cancelled. Departures from the paper: new pastes go beneath the older ones, so
+/// that a look-up that nothing can see is never made (the picture is as the paper's with the order reversed); the
+/// fill runs in parallel rounds. Type 2-c pastes sheets that do not end along T; type 2-d, where nothing repeats, is
+/// a single paste that is exact on every tet.
 LapResult lap(const LapInput& input, const Exemplar& exemplar, const LapOptions& options = {},
               const Progress& progress = {});
 

@@ -45,9 +45,11 @@ double splotch_extent(const SplotchOptions& o, SplotchPart part) {
 Mask splotch_mask(const SplotchOptions& o, SplotchPart part) {
   if (o.axes < 2 || o.axes > 3 || o.resolution < 4 || o.resolution > 256 || !(o.radius > 0) ||
       !(o.radius_outer > 0) || !(o.radius_along > 0) || !(o.reach_outer > 0) || !(o.reach_inner > 0) ||
-      !(o.drop_off > 0) || !(o.irregularity >= 0))
-    throw InvalidInput("mask", "has a size that is not positive or a resolution outside 4 to 256",
-                       "give 2 or 3 axes, a positive radius and drop-off, and an irregularity of at least 0");
+      !(o.drop_off > 0) || !(o.irregularity >= 0) || o.endless_axis < -1 || o.endless_axis >= o.axes)
+    throw InvalidInput(
+        "mask", "has a size that is not positive or a resolution outside 4 to 256",
+        "give 2 or 3 axes, a positive radius and drop-off, an irregularity of at least 0, and an axis that "
+        "the mask has");
   Mask mask;
   mask.axes = o.axes;
   for (int axis = 0; axis < o.axes; ++axis) mask.size[axis] = o.resolution;
@@ -62,6 +64,7 @@ Mask splotch_mask(const SplotchOptions& o, SplotchPart part) {
     center[o.variation_axis] = part == SplotchPart::outer ? 0 : part == SplotchPart::inner ? 1 : 0.5;
     mask.open[o.variation_axis] = part != SplotchPart::middle;
   }
+  if (o.endless_axis >= 0) mask.open[o.endless_axis] = true;
   const Waviness waviness(o.seed);
   mask.alpha.resize(std::size_t(mask.size[0]) * mask.size[1] * mask.size[2]);
   parallel_for(mask.size[2], 1, [&](std::size_t slice) {
@@ -72,10 +75,17 @@ Mask splotch_mask(const SplotchOptions& o, SplotchPart part) {
         Vec3d p((x + 0.5) / mask.size[0], (y + 0.5) / mask.size[1], o.axes == 3 ? (z + 0.5) / mask.size[2] : 0.5);
         for (int axis = 0; axis < 3; ++axis)
           if (!varies || axis != o.variation_axis) p[axis] = (p[axis] - 0.5) * extent;
-        const Vec3d to = (p - center).cwiseQuotient(radius);
+        Vec3d to = (p - center).cwiseQuotient(radius);
+        double along = 0; // an endless axis does not count for how far inside a place is, only for the waves
+        if (o.endless_axis >= 0) {
+          along = to[o.endless_axis];
+          to[o.endless_axis] = 0;
+        }
         const double length = to.norm();
         const Vec3d direction = length > 0 ? Vec3d(to / length) : Vec3d(1, 0, 0);
-        const double border = 1 + o.irregularity / across * waviness(direction);
+        Vec3d wave = direction;
+        if (o.endless_axis >= 0) wave[o.endless_axis] = along;
+        const double border = 1 + o.irregularity / across * waviness(wave);
         // Distance inside the border, in texture widths (along the direction's own radius).
         const double inside = (border - length) * direction.cwiseProduct(radius).norm();
         const double t = std::clamp(inside / o.drop_off, 0.0, 1.0);

@@ -41,6 +41,9 @@ struct SplotchOptions {
   double drop_off = 0.09;     ///< width of the alpha ramp, in texture widths (paper: 0.05–0.10)
   double irregularity = 0.06; ///< amplitude of the border's waviness, in texture widths
   int variation_axis = 1;     ///< the axis along which outer/middle/inner differ (depth)
+  /// An axis along which the splotch does not end (another coordinate that is imposed, type 2-c); −1: none. The
+  /// border still waves along it.
+  int endless_axis = -1;
   std::uint64_t seed = 1;
 };
 
@@ -50,6 +53,7 @@ double splotch_extent(const SplotchOptions& options, SplotchPart part);
 
 /// A splotch: an irregular ellipsoid, opaque inside, falling to 0 over the drop-off. `outer` sits at the low end of
 /// the variation axis and is open (opaque) beyond it, `inner` at the high end, `middle` between (§5.2.1, Fig. 11).
+/// Errors: InvalidInput for sizes that are not positive, a resolution outside 4 to 256, an axis that does not exist.
 Mask splotch_mask(const SplotchOptions& options, SplotchPart part = SplotchPart::whole);
 
 } // namespace pith
