@@ -27,10 +27,13 @@ Json fill_list(const std::vector<FillReport>& fills) {
   Json list = Json::array();
   for (const FillReport& fill : fills)
     list.push_back({{"solid", fill.solid},
+                    {"type", traits_of(fill.type).name},
                     {"pastes", fill.statistics.pastes},
                     {"rounds", fill.statistics.rounds},
                     {"lookups", fill.statistics.lookups},
-                    {"median_share_used", fill.statistics.median_share_used}});
+                    {"median_share_used", fill.statistics.median_share_used},
+                    {"singular_tets", fill.singular.tets},
+                    {"singular_share", fill.singular.share}});
   return list;
 }
 
@@ -56,6 +59,10 @@ void run(const MakeOptions& options, const Session& session) {
   for (const Layer& layer : result.model.layer) lookups += layer.lookup.size(), patches += layer.patch.size();
   for (const StageReport& stage : result.stages)
     session.say(fmt::format("{:12} {:9.3f} s{}", stage.name, stage.seconds, stage.cached ? "  (remembered)" : ""));
+  for (const FillReport& fill : result.fills)
+    session.say(fmt::format("solid {}: type {}, {} pastes; no determined direction in {} tets, {:.2f} % of it",
+                            fill.solid, traits_of(fill.type).name, fill.statistics.pastes, fill.singular.tets,
+                            100 * fill.singular.share));
   if (!result.note.empty()) session.say("note: " + result.note);
   session.say(
       fmt::format("{}: {} tets, {} boundary facets, {} pastes, {} look-ups, {} piece(s); {:.2f} s, {:.0f} MB at most",

@@ -125,7 +125,7 @@ private:
 
 /// The keys of one solid's stages.
 struct SolidKeys {
-  Key depth, frames, exemplar, fill;
+  Key depth, along, around, frames, exemplar, fill; ///< of fields that the solid has not: zeros
 };
 
 class RecipeBuild {
@@ -177,14 +177,20 @@ private:
       const Solid& solid = recipe_.solids[i];
       SolidKeys keys;
       if (solid.kind == Solid::Kind::lapped) {
-        KeyMaker depth = run_.key("depth").add(tets_key_).add(static_cast<int>(solid.region));
-        keys.depth = add(add(depth, solid.depth), solid.depth_options).key();
-        KeyMaker frames = run_.key("frames").add(keys.depth);
-        keys.frames = add(add(frames, solid.orientation), solid.frame).key();
+        KeyMaker frames = run_.key("frames").add(tets_key_).add(static_cast<int>(solid.region));
+        for (const SolidField& field : fields_of(solid)) {
+          if (!field.constraints->empty()) {
+            KeyMaker maker = run_.key("depth").add(tets_key_).add(static_cast<int>(solid.region));
+            keys.*field.key = add(add(maker, *field.constraints), solid.depth_options).key();
+            run_.announce(numbered(field.name, i), keys.*field.key);
+          }
+          frames.add(keys.*field.key);
+        }
+        frames.add(solid.scale);
+        keys.frames = add(add(add(frames, solid.orientation), solid.local_scale), solid.frame).key();
         keys.exemplar = exemplar_key(solid.exemplar, solid_path(i) + "/exemplar");
         KeyMaker fill = run_.key("fill").add(keys.frames).add(keys.exemplar);
         keys.fill = add(fill, solid.fill).key();
-        run_.announce(numbered("depth", i), keys.depth);
         run_.announce(numbered("frames", i), keys.frames);
         run_.announce(numbered("exemplar", i), keys.exemplar);
         run_.announce(numbered("fill", i), keys.fill);
@@ -202,6 +208,18 @@ private:
       step_keys_.push_back(before = add(move, recipe_.moves[k]).key());
       run_.announce(numbered("move", k), before);
     }
+  }
+
+  /// The scalar fields of a solid.
+  struct SolidField {
+    const char* name;
+    const std::vector<DepthConstraint>* constraints;
+    Key SolidKeys::*key;
+  };
+  static std::array<SolidField, 3> fields_of(const Solid& solid) {
+    return {{{"depth", &solid.depth, &SolidKeys::depth},
+             {"along", &solid.along, &SolidKeys::along},
+             {"around", &solid.around, &SolidKeys::around}}};
   }
 
   Key exemplar_key(const ExemplarSource& source, const std::string& at) const {
@@ -263,13 +281,28 @@ private:
   Layer lapped_layer(Model& model, std::size_t i, std::vector<std::uint8_t>& vertex_taken) {
     const Solid& solid = recipe_.solids[i];
     const SolidKeys& keys = solid_keys_[i];
-    const auto depth = run_.result<DepthField>(numbered("depth", i), keys.depth, true, [&](const Progress&) {
-      return depth_field(model.mesh, model.boundary, solid.region, solid.depth, solid_path(i) + "/depth",
-                         solid.depth_options);
-    });
+    std::array<std::shared_ptr<const DepthField>, 3> field; // depth, along, around
+    for (std::size_t f = 0; f < field.size(); ++f) {
+      const SolidField one = fields_of(solid)[f];
+      if (!one.constraints->empty())
+        field[f] = run_.result<DepthField>(numbered(one.name, i), keys.*one.key, true, [&](const Progress&) {
+          return depth_field(model.mesh, model.boundary, solid.region, *one.constraints,
+                             solid_path(i) + "/" + one.name, solid.depth_options);
+        });
+    }
+    const auto& [depth, along, around] = field;
     const auto frames = run_.result<FrameField>(numbered("frames", i), keys.frames, true, [&](const Progress&) {
-      return frames_from_depth(model.mesh, locator(model), solid.region, *depth, solid.orientation,
-                               solid_path(i) + "/orientation", solid.frame);
+      return frames_of({.mesh = model.mesh,
+                        .locator = locator(model),
+                        .region = solid.region,
+                        .depth = depth.get(),
+                        .along = along.get(),
+                        .around = around.get(),
+                        .stroke = solid.orientation,
+                        .scale = solid.scale,
+                        .local_scale = solid.local_scale,
+                        .where = solid_path(i)},
+                       solid.frame);
     });
     const auto exemplar = run_.result<Exemplar>(numbered("exemplar", i), keys.exemplar, true, [&](const Progress&) {
       const ExemplarSource& source = solid.exemplar;
@@ -284,21 +317,28 @@ private:
                            .region = solid.region,
                            .axes = frames->axes,
                            .scale = frames->scale,
-                           .depth = depth->value,
-                           .singular = frames->singular};
+                           .coordinate = {values(around), values(depth), values(along)},
+                           .singular = frames->singular,
+                           .unsigned_axis = solid.frame.unsigned_axis,
+                           .where = solid_path(i)};
       LapResult result = lap(input, *exemplar, solid.fill, progress);
       result.layer.exemplar.clear();
       return result;
     });
-    add_fields(model, solid.region, *depth, *frames, vertex_taken);
-    fills_.push_back({i, fill->statistics});
+    add_fields(model, solid.region, depth.get(), *frames, vertex_taken);
+    fills_.push_back(
+        {i, solid.fill.type, fill->statistics, singular_set(model.mesh, solid.region, frames->singular)});
     Layer layer = fill->layer;
     layer.exemplar = {*exemplar};
     return layer;
   }
 
+  static std::span<const float> values(const std::shared_ptr<const DepthField>& field) {
+    return field ? std::span<const float>(field->value) : std::span<const float>();
+  }
+
   /// Copies one region's fields into the model's. A vertex on an interface keeps the depth of the solid listed first.
-  static void add_fields(Model& model, std::int32_t region, const DepthField& depth, const FrameField& frames,
+  static void add_fields(Model& model, std::int32_t region, const DepthField* depth, const FrameField& frames,
                          std::vector<std::uint8_t>& vertex_taken) {
     const TetMesh& mesh = model.mesh;
     Fields& field = model.field;
@@ -313,7 +353,8 @@ private:
       field.scale[tet] = frames.scale[tet];
       field.singular[tet] = frames.singular[tet];
       for (const VertexId v : mesh.corner[tet]) {
-        if (!vertex_taken[v]) field.depth[v] = depth.value[v];
+        if (!depth) continue; // a solid without depth leaves its vertices to its neighbours
+        if (!vertex_taken[v]) field.depth[v] = depth->value[v];
         mine[v] = 1;
       }
     }

@@ -1,8 +1,8 @@
 #pragma once
 // From a recipe to a model: a chain of pure stages, each remembered under the key of all that it depends on.
 //
-//   surface → tets → refine → per solid: depth → frames ┐
-//                                        exemplar ──────┴→ fill
+//   surface → tets → refine → per solid: depth, along, around → frames ┐
+//                                                      exemplar ──────┴→ fill
 //   refine → cut 0 → cut 1 → … → move 0 → …
 //
 // A changed stroke re-does only what depends on it; an appended cut runs only that cut.
@@ -36,7 +36,9 @@ struct StageReport {
 
 struct FillReport {
   std::size_t solid = 0; ///< entry of the recipe's solids
+  TextureType type = TextureType::tensor_2b;
   LapStatistics statistics;
+  SingularSet singular; ///< where the solid's frames are not determined
 };
 
 struct BuildResult {

@@ -1,6 +1,7 @@
 // Recipe: the document as a whole, its surface and its solids. docs/recipe.md is the manual of the format.
 #include "recipe/json_node.h"
 #include "recipe/parse_steps.h"
+#include "recipe/parse_types.h"
 #include "recipe/recipe.h"
 #include "volume/base/error.h"
 #include "volume/exemplar/procedural.h"
@@ -61,25 +62,36 @@ DepthConstraint depth_from(const JsonNode& node) {
   return result;
 }
 
-void refuse_contradictions(const JsonNode& node, const std::vector<DepthConstraint>& depth) {
+/// `noun`: what the values are called.
+void refuse_contradictions(const JsonNode& node, const std::vector<DepthConstraint>& depth, const std::string& noun) {
   const DepthConstraint* skin = nullptr;
   double low = 1, high = 0;
   for (const DepthConstraint& one : depth) {
     low = std::min(low, one.value), high = std::max(high, one.value);
     if (!one.skin) continue;
-    if (skin && skin->value != one.value) node.fail("gives the skin two depths", "keep one of the \"skin\" entries");
+    if (skin && skin->value != one.value)
+      node.fail("gives the skin two " + noun + "s", "keep one of the \"skin\" entries");
     skin = &one;
   }
-  if (low == high) node.fail("gives every place the same depth", "add a place of another depth, the core at 1, say");
+  if (low == high)
+    node.fail("gives every place the same " + noun, "add a place of another " + noun + ", the core at 1, say");
   for (std::size_t i = 0; i < depth.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       if (depth[i].value == depth[j].value) continue;
       for (const TriangleId t : depth[i].triangles)
         if (std::find(depth[j].triangles.begin(), depth[j].triangles.end(), t) != depth[j].triangles.end())
-          node.fail("gives input triangle " + std::to_string(t) + " two depths (entries " + std::to_string(j) +
+          node.fail("gives input triangle " + std::to_string(t) + " two " + noun + "s (entries " + std::to_string(j) +
                         " and " + std::to_string(i) + ")",
                     "keep it in one of them");
     }
+}
+
+std::vector<DepthConstraint> field_from(const JsonNode& node, const std::string& noun) {
+  std::vector<DepthConstraint> result;
+  for (const JsonNode& entry : node.items(2, "a field needs a place of value 0 and one of value 1"))
+    result.push_back(depth_from(entry));
+  refuse_contradictions(node, result, noun);
+  return result;
 }
 
 std::vector<AxisStroke> orientation_from(const JsonNode& node) {
@@ -137,7 +149,7 @@ void read_mask(const JsonNode& node, SplotchOptions& mask) {
 }
 
 void read_frame(const JsonNode& node, FrameOptions& frame) {
-  node.object({"layer_width", "singular_sine", "vanishing_rise", "smallest_scale", "largest_scale"});
+  node.object({"layer_width", "singular_sine", "vanishing_rise", "smallest_scale", "largest_scale", "axis"});
   node.optional_number("layer_width", frame.layer_width, range::positive);
   node.optional_number("singular_sine", frame.singular_sine, range::fraction);
   node.optional_number("vanishing_rise", frame.vanishing_rise, range::fraction);
@@ -145,11 +157,15 @@ void read_frame(const JsonNode& node, FrameOptions& frame) {
   node.optional_number("largest_scale", frame.largest_scale, range::positive_mm);
   if (frame.largest_scale > 0 && frame.smallest_scale > frame.largest_scale)
     node.fail("has a smallest_scale above its largest_scale", "swap them");
+  if (const auto axis = node.find("axis")) frame.unsigned_axis = axis->choice({"signed", "unsigned"}) == 1;
 }
 
 void read_fill(const JsonNode& node, LapOptions& fill) {
-  node.object({"frame_tolerance", "sample_spacing", "coverage_order", "mask_variants", "align", "max_attempts"});
+  node.object({"frame_tolerance", "scale_tolerance", "sample_spacing", "coverage_order", "mask_variants", "align",
+               "max_attempts"});
   node.optional_number("frame_tolerance", fill.frame_tolerance, {0, pi, true, "above 0, to pi", "give radians"});
+  node.optional_number("scale_tolerance", fill.scale_tolerance,
+                       {1, endless, true, "above 1", "give a ratio of two scales"});
   node.optional_number("sample_spacing", fill.sample_spacing, {1e-3, 1, false, "0.001 to 1", "give texture widths"});
   node.optional_whole("coverage_order", fill.coverage_order, 1, 16, "8 samples each tet edge eight times");
   node.optional_whole("mask_variants", fill.mask_variants, 1, 64, "give a number of outlines");
@@ -160,9 +176,7 @@ void read_fill(const JsonNode& node, LapOptions& fill) {
 Solid solid_from(const JsonNode& node) {
   Solid result;
   if (!node.is_object()) node.object({});
-  const std::size_t type = node.at("type").choice({"plain", "2-b", "0", "1-a", "1-b", "2-a", "2-c", "2-d"});
-  if (type > 1)
-    node.at("type").fail("is a kind of solid texture that pith does not fill yet", "use \"2-b\" or \"plain\"");
+  const std::size_t type = node.at("type").choice({"plain", "0", "1-a", "1-b", "2-a", "2-b", "2-c", "2-d"});
   if (const auto region = node.find("region"))
     result.region =
         static_cast<std::int32_t>(region->whole(0, 1'000'000, "regions count from 0, one per closed shell"));
@@ -175,20 +189,26 @@ Solid solid_from(const JsonNode& node) {
       color.fail("has a component outside 0 to 1", "give linear red, green, blue");
     return result;
   }
-  node.object(
-      {"type", "region", "depth", "depth_options", "orientation", "frame", "exemplar", "mask", "fill", "seed"});
-  result.fill.type = TextureType::tensor_2b;
-  const JsonNode depth = node.at("depth");
-  for (const JsonNode& entry : depth.items(2, "a depth needs a place of value 0 and one of value 1"))
-    result.depth.push_back(depth_from(entry));
-  refuse_contradictions(depth, result.depth);
+  node.object({"type", "region", "depth", "along", "around", "depth_options", "orientation", "scale", "local_scale",
+               "frame", "exemplar", "mask", "fill", "seed"});
+  result.fill.type = static_cast<TextureType>(type - 1);
+  check_keys_of_type(node, result.fill.type);
+  if (const auto depth = node.find("depth")) result.depth = field_from(*depth, "depth");
+  if (const auto along = node.find("along")) result.along = field_from(*along, "value");
+  if (const auto around = node.find("around")) result.around = field_from(*around, "value");
   if (const auto options = node.find("depth_options")) {
     options->object({"max_centers", "stroke_spacing"});
     options->optional_whole("max_centers", result.depth_options.max_centers, 10, 20'000, "1500 suits most solids");
     options->optional_number("stroke_spacing", result.depth_options.stroke_spacing, range::positive_mm);
   }
-  result.orientation = orientation_from(node.at("orientation"));
-  if (const auto frame = node.find("frame")) read_frame(*frame, result.frame);
+  if (const auto orientation = node.find("orientation")) result.orientation = orientation_from(*orientation);
+  node.optional_number("scale", result.scale, range::positive_mm);
+  if (const auto local = node.find("local_scale")) result.local_scale = local_scale_from(*local);
+  if (const auto frame = node.find("frame")) {
+    read_frame(*frame, result.frame);
+    if (result.frame.unsigned_axis && !traits_of(result.fill.type).uses_stroke)
+      frame->at("axis").fail("is unsigned in a type without strokes", "remove it: 1-a, 2-a and 2-b have an axis");
+  }
   result.exemplar = exemplar_from(node.at("exemplar"));
   if (const auto mask = node.find("mask")) read_mask(*mask, result.fill.splotch);
   if (const auto fill = node.find("fill")) read_fill(*fill, result.fill);

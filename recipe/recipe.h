@@ -40,9 +40,14 @@ struct Solid {
   std::int32_t region = 0;    ///< one per closed shell of the surface, 0, 1, 2 … from the outside in
   Vec3d color{0.5, 0.5, 0.5}; ///< plain: linear Rec.709
 
-  std::vector<DepthConstraint> depth;
-  DepthOptions depth_options;
-  std::vector<AxisStroke> orientation;
+  // Which of these a type takes: traits_of(fill.type).
+  std::vector<DepthConstraint> depth;  ///< S follows its gradient; coordinate 1 where the texture varies along it
+  std::vector<DepthConstraint> along;  ///< types 2-c and 2-d: coordinate 2, from 0 to 1
+  std::vector<DepthConstraint> around; ///< type 2-d: coordinate 0, from 0 to 1
+  DepthOptions depth_options;          ///< of all three
+  std::vector<AxisStroke> orientation; ///< T follows them
+  double scale = 0;                    ///< mm per texture width (types 0, 1-a, 2-a); 0: none is given
+  std::vector<ScaleConstraint> local_scale;
   FrameOptions frame;
   ExemplarSource exemplar;
   LapOptions fill; ///< type, seed, mask (splotch) and limits

@@ -38,12 +38,19 @@ KeyMaker& add(KeyMaker& maker, const std::vector<AxisStroke>& strokes) {
   return maker;
 }
 
+KeyMaker& add(KeyMaker& maker, const std::vector<ScaleConstraint>& constraints) {
+  maker.add(static_cast<std::uint64_t>(constraints.size()));
+  for (const ScaleConstraint& one : constraints) maker.add(one.stroke).add(one.factor);
+  return maker;
+}
+
 KeyMaker& add(KeyMaker& maker, const FrameOptions& options) {
   return maker.add(options.layer_width)
       .add(options.singular_sine)
       .add(options.vanishing_rise)
       .add(options.smallest_scale)
-      .add(options.largest_scale);
+      .add(options.largest_scale)
+      .add(options.unsigned_axis);
 }
 
 KeyMaker& add(KeyMaker& maker, const LapOptions& options) {
@@ -51,6 +58,7 @@ KeyMaker& add(KeyMaker& maker, const LapOptions& options) {
   return maker.add(static_cast<int>(options.type))
       .add(options.seed)
       .add(options.frame_tolerance)
+      .add(options.scale_tolerance)
       .add(options.coverage_order)
       .add(options.sample_spacing)
       .add(options.mask_variants)
@@ -66,6 +74,7 @@ KeyMaker& add(KeyMaker& maker, const LapOptions& options) {
       .add(mask.drop_off)
       .add(mask.irregularity)
       .add(mask.variation_axis)
+      .add(mask.endless_axis)
       .add(mask.seed);
 }
 

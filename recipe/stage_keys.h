@@ -9,6 +9,7 @@ KeyMaker& add(KeyMaker& maker, const TetrahedralizeOptions& options);
 KeyMaker& add(KeyMaker& maker, const std::vector<DepthConstraint>& constraints);
 KeyMaker& add(KeyMaker& maker, const DepthOptions& options);
 KeyMaker& add(KeyMaker& maker, const std::vector<AxisStroke>& strokes);
+KeyMaker& add(KeyMaker& maker, const std::vector<ScaleConstraint>& constraints);
 KeyMaker& add(KeyMaker& maker, const FrameOptions& options);
 KeyMaker& add(KeyMaker& maker, const LapOptions& options);
 KeyMaker& add(KeyMaker& maker, const CutStep& step);

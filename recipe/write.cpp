@@ -83,7 +83,31 @@ json json_from(const FrameOptions& frame) {
   put(result, "vanishing_rise", frame.vanishing_rise, usual.vanishing_rise);
   put(result, "smallest_scale", frame.smallest_scale, usual.smallest_scale);
   put(result, "largest_scale", frame.largest_scale, usual.largest_scale);
+  if (frame.unsigned_axis) result["axis"] = "unsigned";
   return result;
+}
+
+json json_from(const AxisStroke& stroke) { return {{"stroke", json_from(stroke.point)}}; }
+
+json json_from(const ScaleConstraint& local) {
+  json result = json::object();
+  if (local.stroke.size() == 1)
+    result["point"] = json_from(local.stroke.front());
+  else
+    result["stroke"] = json_from(local.stroke);
+  result["factor"] = local.factor;
+  return result;
+}
+
+json json_from(const Solid& solid);
+json json_from(const CutStep& cut);
+json json_from(const MoveStep& move);
+template <class T>
+void put_list(json& into, const char* key, const std::vector<T>& entries) {
+  if (entries.empty()) return;
+  json list = json::array();
+  for (const T& entry : entries) list.push_back(json_from(entry));
+  into[key] = std::move(list);
 }
 
 json json_from(const Solid& solid) {
@@ -93,23 +117,24 @@ json json_from(const Solid& solid) {
     result["color"] = json_from(solid.color);
     return result;
   }
-  result["type"] = "2-b";
-  json depth = json::array();
-  for (const DepthConstraint& constraint : solid.depth) depth.push_back(json_from(constraint));
-  result["depth"] = std::move(depth);
+  result["type"] = traits_of(solid.fill.type).name;
+  put_list(result, "depth", solid.depth);
+  put_list(result, "along", solid.along);
+  put_list(result, "around", solid.around);
   json depth_options = json::object();
   put(depth_options, "max_centers", solid.depth_options.max_centers, DepthOptions().max_centers);
   put(depth_options, "stroke_spacing", solid.depth_options.stroke_spacing, DepthOptions().stroke_spacing);
   put_object(result, "depth_options", std::move(depth_options));
-  json orientation = json::array();
-  for (const AxisStroke& stroke : solid.orientation) orientation.push_back({{"stroke", json_from(stroke.point)}});
-  result["orientation"] = std::move(orientation);
+  put_list(result, "orientation", solid.orientation);
+  put(result, "scale", solid.scale, 0.0);
+  put_list(result, "local_scale", solid.local_scale);
   put_object(result, "frame", json_from(solid.frame));
   result["exemplar"] = json_from(solid.exemplar);
   put_object(result, "mask", json_from(solid.fill.splotch));
   const LapOptions usual;
   json fill = json::object();
   put(fill, "frame_tolerance", solid.fill.frame_tolerance, usual.frame_tolerance);
+  put(fill, "scale_tolerance", solid.fill.scale_tolerance, usual.scale_tolerance);
   put(fill, "sample_spacing", solid.fill.sample_spacing, usual.sample_spacing);
   put(fill, "coverage_order", solid.fill.coverage_order, usual.coverage_order);
   put(fill, "mask_variants", solid.fill.mask_variants, usual.mask_variants);
@@ -161,14 +186,6 @@ json json_from(const MoveStep& move) {
     if (move.about) result["about"] = json_from(*move.about);
   }
   return result;
-}
-
-template <class T>
-void put_list(json& into, const char* key, const std::vector<T>& entries) {
-  if (entries.empty()) return;
-  json list = json::array();
-  for (const T& entry : entries) list.push_back(json_from(entry));
-  into[key] = std::move(list);
 }
 
 /// Shortest text that reads back alike; whole numbers without a point.

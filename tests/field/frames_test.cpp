@@ -186,3 +186,156 @@ TEST(Frames, RefuseStrokesThatDoNotServe) {
   expect({good}, "everywhere");
   EXPECT_THROW(frames_from_depth(bar.mesh, bar.locator, 3, bar.depth, {good}, "x"), InvalidInput);
 }
+
+namespace {
+
+/// A box 8 × 4 × 16 with opposite strokes along z on two of its sides.
+struct OpposedBox : Scene {
+  OpposedBox() : Scene(tet_grid(8, 4, 16)) {}
+  const std::vector<AxisStroke> stroke{{.point = {{0, 2, 0}, {0, 2, 16}}}, {.point = {{8, 2, 16}, {8, 2, 0}}}};
+  FrameInput input() const { return {.mesh = mesh, .locator = locator, .stroke = stroke, .scale = 2}; }
+};
+
+std::string refusal_of(const FrameInput& input, const FrameOptions& options = {}) {
+  try {
+    frames_of(input, options);
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+} // namespace
+
+TEST(Frames, OppositeStrokesAgreeAsAnAxisButCancelAsVectors) {
+  const OpposedBox box;
+  const FrameField vectors = frames_of(box.input()), axis = frames_of(box.input(), {.unsigned_axis = true});
+  double worst = 1;
+  int against = 0, first = 0;
+  for (const TetId t : all_ids<TetId>(box.mesh.tet_count())) {
+    EXPECT_EQ(axis.singular[t], 0);
+    worst = std::min(worst, axis.axes[t].col(2).z()); // with its sign: signs agree
+    EXPECT_LT((axis.axes[t].transpose() * axis.axes[t] - Mat3d::Identity()).norm(), 1e-9);
+    EXPECT_GT(axis.axes[t].determinant(), 0);
+    against += vectors.axes[t].col(2).z() < 0;
+    first += vectors.axes[t].col(2).z() > 0;
+  }
+  EXPECT_GT(worst, std::cos(1 * degree));
+  // The signed field turns over in the middle.
+  EXPECT_GT(against, 500);
+  EXPECT_GT(first, 500);
+  EXPECT_NEAR(axis.scale[TetId(0)], 2, 1e-6);
+}
+
+TEST(Frames, AnAxisWithoutSignStaysAcrossTheDepth) {
+  const Bar bar;
+  const std::vector<AxisStroke> stroke{{.point = {{0.5, 4, 2}, {0.5, 4, 18}}},
+                                       {.point = {{7.5, 4, 18}, {7.5, 4, 2}}}};
+  const FrameField field = bar.frames(stroke, {.unsigned_axis = true});
+  expect_frames(bar, field);
+  for (const TetId t : all_ids<TetId>(bar.mesh.tet_count())) {
+    EXPECT_EQ(field.singular[t], 0);
+    EXPECT_GT(std::abs(field.axes[t].col(2).z()), std::cos(1 * degree));
+  }
+}
+
+TEST(Frames, OfStrokesAloneBendWithThem) {
+  // A quarter circle around (0, ·, 0) on a box: the field turns with the stroke.
+  const Scene scene(tet_grid(10, 3, 10));
+  AxisStroke arc;
+  for (int i = 0; i <= 30; ++i)
+    arc.point.push_back({8 * std::cos(3 * i * degree), 1.5, 8 * std::sin(3 * i * degree)});
+  const std::vector<AxisStroke> strokes{arc};
+  const FrameField field = frames_of({.mesh = scene.mesh, .locator = scene.locator, .stroke = strokes, .scale = 3});
+  for (int i = 2; i < 29; ++i) {
+    const TetId t = scene.locator.owner(arc.point[i]);
+    EXPECT_GT(field.axes[t].col(2).dot(Vec3d(-arc.point[i].z(), 0, arc.point[i].x()).normalized()),
+              std::cos(6 * degree));
+  }
+}
+
+TEST(Frames, OfDepthAloneFollowItsGradient) {
+  const Fruit fruit(8);
+  const FrameField field = frames_of({.mesh = fruit.mesh, .locator = fruit.locator, .depth = &fruit.depth});
+  expect_frames(fruit, field);
+  const SingularSet set = singular_set(fruit.mesh, 0, field.singular);
+  EXPECT_EQ(set.tets, static_cast<std::size_t>(std::count(field.singular.begin(), field.singular.end(), 1)));
+  EXPECT_LT(set.share, 0.05);
+}
+
+TEST(Frames, OfFieldsFollowBothGradients) {
+  Bar bar;
+  DepthField along = bar.depth, around = bar.depth;
+  for (const TetId t : all_ids<TetId>(bar.mesh.tet_count())) {
+    along.gradient[t] = Vec3d(0.02, 0, 0.05);
+    const Vec3d x = barycenter(bar.mesh, t);
+    around.gradient[t] = Vec3d(x.y() - 4, 4 - x.x(), 0).normalized() / 6;
+  }
+  const FrameField two = frames_of({.mesh = bar.mesh, .locator = bar.locator, .depth = &bar.depth, .along = &along});
+  expect_frames(bar, two);
+  for (const TetId t : all_ids<TetId>(bar.mesh.tet_count())) {
+    const Vec3d r = two.axes[t].col(0); // across both gradients, so that nothing shears along it
+    EXPECT_LT(std::abs(r.dot(along.gradient[t].normalized())), 1e-9);
+    EXPECT_GT(two.axes[t].col(2).dot(along.gradient[t]), 0);
+    EXPECT_EQ(two.singular[t], 0);
+  }
+  // A part of the map that is turned inside out is singular; a mirror image as a whole is not.
+  FrameInput three{.mesh = bar.mesh, .locator = bar.locator, .depth = &bar.depth, .along = &along, .around = &around};
+  EXPECT_EQ(singular_set(bar.mesh, 0, frames_of(three).singular).tets, 0u);
+  for (Vec3d& g : around.gradient) g = -g;
+  EXPECT_EQ(singular_set(bar.mesh, 0, frames_of(three).singular).tets, 0u);
+  around.gradient[TetId(7)] = -around.gradient[TetId(7)];
+  EXPECT_EQ(singular_set(bar.mesh, 0, frames_of(three).singular).tets, 1u);
+}
+
+TEST(Frames, LocalScaleIsInterpolatedWithinItsFactors) {
+  const Scene box(tet_grid(4, 4, 20));
+  const std::vector<ScaleConstraint> local{{.stroke = {{2, 2, 0}}, .factor = 1},
+                                           {.stroke = {{0, 0, 10}, {4, 4, 10}}, .factor = 4}};
+  const FrameField field = frames_of({.mesh = box.mesh, .locator = box.locator, .scale = 5, .local_scale = local});
+  for (const TetId t : all_ids<TetId>(box.mesh.tet_count())) {
+    const double z = barycenter(box.mesh, t).z();
+    EXPECT_GE(field.scale[t], 5 * 0.999f);
+    EXPECT_LE(field.scale[t], 20 * 1.001f); // does not run on beyond the second
+    if (std::abs(z - 5) < 0.6) {
+      EXPECT_NEAR(field.scale[t], 10, 4.5); // half way: about the geometric mean
+    }
+    if (z > 10.5) {
+      EXPECT_GT(field.scale[t], 17);
+    }
+  }
+  const std::vector<ScaleConstraint> alone{{.stroke = {{2, 2, 0}}, .factor = 3}};
+  for (const float s : frames_of({.mesh = box.mesh, .locator = box.locator, .scale = 5, .local_scale = alone}).scale)
+    EXPECT_NEAR(s, 15, 1e-4);
+}
+
+TEST(Frames, RefuseWhatContradictsByKey) {
+  const OpposedBox box;
+  const auto expect_begin = [](const std::string& text, const std::string& begin) {
+    EXPECT_EQ(text.substr(0, begin.size()), begin);
+  };
+  FrameInput input = box.input();
+  input.where = "x.json: /solids/0";
+  input.scale = 0;
+  expect_begin(refusal_of(input), "x.json: /solids/0/scale: is missing");
+  input.scale = -1;
+  expect_begin(refusal_of(input), "x.json: /solids/0/scale: is -1");
+  input.scale = 2;
+  DepthField depth;
+  depth.value.assign(box.mesh.vertex_count(), 0);
+  depth.gradient.assign(box.mesh.tet_count(), Vec3d(1, 0, 0));
+  input.along = &depth;
+  expect_begin(refusal_of(input), "x.json: /solids/0/along: is given without \"depth\"");
+  input.depth = &depth;
+  expect_begin(refusal_of(input), "x.json: /solids/0/orientation: and \"along\" both give the T axis");
+  input.stroke = {};
+  expect_begin(refusal_of(input), "x.json: /solids/0/along: rises along \"depth\" everywhere");
+  input.along = nullptr;
+  const std::vector<ScaleConstraint> outside{{.stroke = {{50, 0, 0}}, .factor = 2}};
+  input.local_scale = outside;
+  expect_begin(refusal_of(input), "x.json: /solids/0/local_scale/0: touches no place");
+  const std::vector<ScaleConstraint> nothing{{.stroke = {{1, 1, 1}}, .factor = 0}};
+  input.local_scale = nothing;
+  expect_begin(refusal_of(input), "x.json: /solids/0/local_scale/0/factor: is 0");
+  EXPECT_EQ(refusal_of(box.input()), "accepted");
+}

@@ -133,7 +133,15 @@ INSTANTIATE_TEST_SUITE_P(Recipe, RecipeMistakes, ::testing::ValuesIn(std::vector
   {"ZeroScale", "\"scale\": 2", "\"scale\": 0", "kiwi.json: /surface/scale: is 0, must be positive"},
   {"SolidsObject", "\"cuts\": [", "\"cuts\": 3, \"moves2\": [", "kiwi.json: /moves2: is not a known key; did you mean \"moves\"?"},
   {"UnknownType", "\"2-b\"", "\"2-z\"", "kiwi.json: /solids/0/type: is \"2-z\", which is not known"},
-  {"UnfilledType", "\"2-b\"", "\"1-b\"", "kiwi.json: /solids/0/type: is a kind of solid texture that pith does not fill yet"},
+  {"StrokesWithoutUse", "\"2-b\"", "\"1-b\"", "kiwi.json: /solids/0/orientation: is not for type 1-b; remove it, or choose another type; it is for 1-a, 2-a and 2-b"},
+  {"DepthWithoutUse", "\"2-b\"", "\"1-a\"", "kiwi.json: /solids/0/depth: is not for type 1-a; remove it"},
+  {"NoScale", "\"2-b\"", "\"2-a\"", "kiwi.json: /solids/0: lacks \"scale\", the size of the texture in type 2-a; give millimetres"},
+  {"NoAlong", "\"2-b\"", "\"2-c\"", "kiwi.json: /solids/0: lacks \"along\", from which the texture's T coordinate comes in type 2-c"},
+  {"ScaleOfDepth", "\"seed\": 7", "\"seed\": 7, \"scale\": 3", "kiwi.json: /solids/0/scale: is not for type 2-b; remove it, or choose another type; it is for 0, 1-a and 2-a"},
+  {"AlongOfStrokes", "\"seed\": 7", "\"seed\": 7, \"along\": []", "kiwi.json: /solids/0/along: is not for type 2-b"},
+  {"LocalScaleNowhere", "\"seed\": 7", "\"seed\": 7, \"local_scale\": [{\"factor\": 2}]", "kiwi.json: /solids/0/local_scale/0: names no place"},
+  {"LocalScaleZero", "\"seed\": 7", "\"seed\": 7, \"local_scale\": [{\"point\": [0, 0, 0], \"factor\": 0}]", "kiwi.json: /solids/0/local_scale/0/factor: is 0, must be 0.01 to 100"},
+  {"UnknownAxis", "\"largest_scale\": 40", "\"axis\": \"none\"", "kiwi.json: /solids/0/frame/axis: is \"none\", which is not known"},
   {"DepthTooHigh", "\"value\": 1}", "\"value\": 1.5}", "kiwi.json: /solids/0/depth/1/value: is 1.5, must be 0 to 1"},
   {"SameDepth", "\"value\": 1}", "\"value\": 0}", "kiwi.json: /solids/0/depth: gives every place the same depth"},
   {"TwoPlaces", "\"skin\": true,", "\"skin\": true, \"triangles\": [1],", "kiwi.json: /solids/0/depth/0: names more than one place"},
@@ -186,6 +194,74 @@ TEST(Recipe, TextThatIsNoRecipeIsRefused) {
   EXPECT_EQ(message_of("{\"pith\": 1, \"name\": \"\xff\"}").substr(0, 24), "kiwi.json: is not JSON: ");
   const std::string deep = std::string(100'000, '[');
   EXPECT_EQ(message_of(deep).substr(0, 29), "kiwi.json: is nested more tha");
+}
+
+/// A recipe of one solid.
+std::string with_solid(const std::string& solid) {
+  return R"({"pith": 1, "surface": {"file": "a.obj"}, "solids": [)" + solid + "]}";
+}
+
+constexpr const char* exemplar = R"("exemplar": {"procedural": "kiwi"})";
+constexpr const char* two_depths = R"([{"skin": true, "value": 0}, {"stroke": [[0, 0, 0]], "value": 1}])";
+constexpr const char* a_stroke = R"([{"stroke": [[0, 0, 0], [0, 0, 1]]}])";
+
+TEST(Recipe, EveryTypeOfTextureIsReadAndWritten) {
+  const std::string depth = std::string(R"("depth": )") + two_depths,
+                    strokes = std::string(R"("orientation": )") + a_stroke,
+                    along = std::string(R"("along": )") + two_depths,
+                    around = std::string(R"("around": )") + two_depths;
+  const std::vector<std::pair<TextureType, std::string>> cases{
+      {TextureType::isotropic_0, R"("type": "0", "scale": 4.5, "local_scale": [{"point": [1, 2, 3], "factor": 2}])"},
+      {TextureType::axis_1a, R"("type": "1-a", "scale": 4, "frame": {"axis": "unsigned"}, )" + strokes},
+      {TextureType::axis_1b, R"("type": "1-b", )" + depth},
+      {TextureType::tensor_2a,
+       R"("type": "2-a", "scale": 4, "fill": {"scale_tolerance": 3}, )" + depth + ", " + strokes},
+      {TextureType::tensor_2b,
+       R"("type": "2-b", "local_scale": [{"stroke": [[1, 2, 3], [4, 5, 6]], "factor": 0.5}], )" + depth + ", " +
+           strokes},
+      {TextureType::tensor_2c, R"("type": "2-c", )" + depth + ", " + along},
+      {TextureType::tensor_2d, R"("type": "2-d", )" + depth + ", " + along + ", " + around}};
+  for (const auto& [type, keys] : cases) {
+    const Recipe recipe = parse_recipe(with_solid("{" + keys + ", " + exemplar + "}"), "a.json");
+    const std::string text = recipe_text(recipe);
+    const Recipe again = parse_recipe(text, "a.json");
+    EXPECT_EQ(recipe_text(again), text);
+    const Solid &a = recipe.solids[0], &b = again.solids[0];
+    EXPECT_EQ(a.fill.type, type);
+    EXPECT_EQ(b.fill.type, type);
+    EXPECT_EQ(b.scale, a.scale);
+    EXPECT_EQ(b.depth.size(), a.depth.size());
+    EXPECT_EQ(b.along.size(), type >= TextureType::tensor_2c ? 2u : 0u);
+    EXPECT_EQ(b.around.size(), type == TextureType::tensor_2d ? 2u : 0u);
+    EXPECT_EQ(b.orientation.size(), a.orientation.size());
+    EXPECT_EQ(b.frame.unsigned_axis, type == TextureType::axis_1a);
+    EXPECT_EQ(b.fill.scale_tolerance, type == TextureType::tensor_2a ? 3 : 1.5);
+    ASSERT_EQ(b.local_scale.size(), a.local_scale.size());
+    for (std::size_t i = 0; i < a.local_scale.size(); ++i) {
+      EXPECT_EQ(b.local_scale[i].stroke, a.local_scale[i].stroke);
+      EXPECT_EQ(b.local_scale[i].factor, a.local_scale[i].factor);
+    }
+  }
+  EXPECT_EQ(parse_recipe(with_solid("{" + cases[0].second + ", " + exemplar + "}"), "a").solids[0].scale, 4.5);
+}
+
+TEST(Recipe, KeysThatATypeHasNoUseForAreRefused) {
+  const auto refused = [&](const std::string& keys, const std::string& message) {
+    const std::string text = message_of(with_solid("{" + keys + ", " + exemplar + "}"));
+    EXPECT_EQ(text.substr(0, message.size()), message) << text;
+  };
+  const std::string fields =
+      std::string(R"("depth": )") + two_depths + R"(, "along": )" + two_depths + R"(, "around": )" + two_depths;
+  refused(R"("type": "0")", "kiwi.json: /solids/0: lacks \"scale\"");
+  refused(R"("type": "0", "scale": 0)", "kiwi.json: /solids/0/scale: is 0, must be positive");
+  refused(R"("type": "0", "scale": 1, "frame": {})", "kiwi.json: /solids/0/frame: is not for type 0");
+  refused(R"("type": "2-d", "mask": {}, )" + fields, "kiwi.json: /solids/0/mask: is not for type 2-d");
+  refused(R"("type": "2-d", "local_scale": [], )" + fields, "kiwi.json: /solids/0/local_scale: is not for type 2-d");
+  refused(R"("type": "1-b", "frame": {"axis": "unsigned"}, "depth": )" + std::string(two_depths),
+          "kiwi.json: /solids/0/frame/axis: is unsigned in a type without strokes");
+  refused(R"("type": "2-c", "along": [{"skin": true, "value": 1}, {"stroke": [[0, 0, 0]], "value": 1}], "depth": )" +
+              std::string(two_depths),
+          "kiwi.json: /solids/0/along: gives every place the same value");
 }
 
 TEST(Recipe, BareStrokesAndCutsAreRead) {
