@@ -4,6 +4,7 @@
 #include "volume/io/atomic_file.h"
 #include "volume/io/model_io.h"
 
+#include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
 
@@ -31,6 +32,7 @@ Json fill_list(const std::vector<FillReport>& fills) {
                     {"pastes", fill.statistics.pastes},
                     {"rounds", fill.statistics.rounds},
                     {"lookups", fill.statistics.lookups},
+                    {"inverted_lookups", fill.statistics.inverted},
                     {"median_share_used", fill.statistics.median_share_used},
                     {"singular_tets", fill.singular.tets},
                     {"singular_share", fill.singular.share}});
@@ -60,9 +62,12 @@ void run(const MakeOptions& options, const Session& session) {
   for (const StageReport& stage : result.stages)
     session.say(fmt::format("{:12} {:9.3f} s{}", stage.name, stage.seconds, stage.cached ? "  (remembered)" : ""));
   for (const FillReport& fill : result.fills)
-    session.say(fmt::format("solid {}: type {}, {} pastes; no determined direction in {} tets, {:.2f} % of it",
-                            fill.solid, traits_of(fill.type).name, fill.statistics.pastes, fill.singular.tets,
-                            100 * fill.singular.share));
+    session.say(fmt::format(
+        "solid {}: type {}, {} pastes, {:.2f} % of the look-ups in mirror image; no determined direction "
+        "in {} tets, {:.2f} % of the volume",
+        fill.solid, traits_of(fill.type).name, fill.statistics.pastes,
+        100.0 * double(fill.statistics.inverted) / double(std::max<std::size_t>(1, fill.statistics.lookups)),
+        fill.singular.tets, 100 * fill.singular.share));
   if (!result.note.empty()) session.say("note: " + result.note);
   session.say(
       fmt::format("{}: {} tets, {} boundary facets, {} pastes, {} look-ups, {} piece(s); {:.2f} s, {:.0f} MB at most",

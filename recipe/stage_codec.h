@@ -140,6 +140,7 @@ void transfer(Archive& archive, Item& statistics) {
   transfer(archive, statistics.pastes);
   transfer(archive, statistics.rounds);
   transfer(archive, statistics.lookups);
+  transfer(archive, statistics.inverted);
   transfer(archive, statistics.warp_iterations);
   transfer(archive, statistics.median_share_used);
 }

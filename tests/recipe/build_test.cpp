@@ -275,6 +275,64 @@ TEST_F(Build, APlainRecipeIsGreyAllTheWayThrough) {
   }
 }
 
+TEST_F(Build, HasTheStagesThatATypeNeeds) {
+  recipe.cuts.clear();
+  recipe.moves.clear();
+  const Solid kiwi = recipe.solids[0];
+  const auto stages = [&](const BuildResult& result) {
+    Names names;
+    for (const StageReport& stage : result.stages)
+      if (stage.name.ends_with(" 0")) names.insert(stage.name);
+    return names;
+  };
+  Builder builder(in_memory());
+  const auto type = [&](TextureType to) {
+    Solid solid;
+    solid.fill = kiwi.fill;
+    solid.fill.type = to;
+    solid.exemplar = kiwi.exemplar;
+    const TextureTraits& traits = traits_of(to);
+    if (traits.uses_depth) solid.depth = kiwi.depth;
+    if (traits.uses_stroke) solid.orientation = kiwi.orientation;
+    if (traits.uses_scale) solid.scale = 20;
+    const auto from_to = [](const Vec3d& a, const Vec3d& b) -> std::vector<DepthConstraint> {
+      return {{.value = 0, .skin = false, .triangles = {}, .stroke = {a}},
+              {.value = 1, .skin = false, .triangles = {}, .stroke = {b}}};
+    };
+    if (traits.imposed[2]) solid.along = from_to({0, 0, -20}, {0, 0, 20});
+    if (traits.imposed[0]) solid.around = from_to({-20, 0, 0}, {20, 0, 0});
+    return solid;
+  };
+  // The kiwi exemplar does not repeat along S: types that tile there refuse it, by the solid's key.
+  recipe.solids = {type(TextureType::isotropic_0)};
+  try {
+    builder.build(recipe, folder.path());
+    ADD_FAILURE() << "accepted";
+  } catch (const InvalidInput& error) {
+    EXPECT_EQ(
+        std::string(error.what())
+            .find("ball.json: /solids/0/exemplar: 'kiwi' does not repeat along axis 1 (S), along which type 0 tiles"),
+        0u)
+        << error.what();
+  }
+  recipe.solids = {type(TextureType::axis_1b)};
+  BuildResult result = builder.build(recipe, folder.path());
+  EXPECT_EQ(stages(result), (Names{"depth 0", "frames 0", "exemplar 0", "fill 0"}));
+  ASSERT_EQ(result.fills.size(), 1u);
+  EXPECT_EQ(result.fills[0].type, TextureType::axis_1b);
+  recipe.solids = {type(TextureType::tensor_2c)};
+  EXPECT_EQ(stages(builder.build(recipe, folder.path())),
+            (Names{"depth 0", "along 0", "frames 0", "exemplar 0", "fill 0"}));
+  recipe.solids = {type(TextureType::tensor_2d)};
+  result = builder.build(recipe, folder.path());
+  EXPECT_EQ(stages(result), (Names{"depth 0", "along 0", "around 0", "frames 0", "exemplar 0", "fill 0"}));
+  EXPECT_EQ(result.fills[0].statistics.pastes, 1u);
+  validate(result.model);
+  // A change of one field repeats that field and what stands on it.
+  recipe.solids[0].around[0].stroke = {{0, -20, 0}};
+  EXPECT_EQ(done_again(builder.build(recipe, folder.path())), (Names{"around 0", "frames 0", "fill 0"}));
+}
+
 TEST_F(Build, KeptHalvesAndMovedPiecesAreTakenInByLaterCuts) {
   recipe.solids.clear();
   recipe.cuts.resize(1); // x = 1: left half piece 0, right half piece 1

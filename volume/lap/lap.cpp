@@ -180,6 +180,7 @@ private:
     for (std::size_t i = 0; i < seeds.size(); ++i) {
       const std::size_t before = pastes_.count();
       pastes_.commit(pastes[i]);
+      statistics_.inverted += pastes[i].inverted;
       statistics_.warp_iterations += pastes[i].growth.warp_iterations;
       if (pastes_.count() > before) shares_.push_back(pastes[i].share_used);
       if (pastes_.coverage().open(seeds[i]) && ++attempts_[seeds[i]] > options_.max_attempts) {

@@ -44,6 +44,9 @@ struct LapOptions {
 struct LapStatistics {
   std::size_t pastes = 0, rounds = 0;
   std::size_t lookups = 0; ///< only those that can be seen are kept
+  /// Of them, those that show the exemplar in mirror image: where a piece reaches across a singular axis, beyond
+  /// which depth falls again.
+  std::size_t inverted = 0;
   std::size_t warp_iterations = 0;
   double median_share_used = 0; ///< of a mask's alpha, the part that lies on tets of its clump: median over pastes
 };

@@ -19,6 +19,7 @@ void Pastes::look(Paste& paste) const {
   const int n = mesh_.corners;
   paste.shown.clear();
   paste.let_through.clear();
+  paste.inverted = 0;
   double used = 0;
   std::array<Lanes, 4> row{};
   const auto alpha_at = [&](const std::array<float, 4>& b) {
@@ -32,11 +33,13 @@ void Pastes::look(Paste& paste) const {
       row[i][axes_] = paste.growth.weight[v];
     }
     // The used share: alpha at its middle times the size of its image in the texture.
+    double image = 0; // six times its volume in the mask's cube, below 0 in mirror image
     if (n == 4) {
       Mat3d edges;
       for (int k = 0; k < 3; ++k)
         for (int a = 0; a < 3; ++a) edges(a, k) = row[k + 1][a] - row[0][a];
-      used += std::abs(edges.determinant()) / 6 * alpha_at({0.25f, 0.25f, 0.25f, 0.25f});
+      image = edges.determinant();
+      used += std::abs(image) / 6 * alpha_at({0.25f, 0.25f, 0.25f, 0.25f});
     }
     const std::uint32_t simplex = clump.simplex[s];
     if (!coverage_.open(simplex)) continue;
@@ -51,6 +54,7 @@ void Pastes::look(Paste& paste) const {
     }
     if (seen) {
       paste.shown.push_back(s);
+      paste.inverted += image < 0;
     } else {
       paste.let_through.resize(start);
     }

@@ -12,6 +12,7 @@ struct Paste {
   Patch patch;
   Growth growth;
   float share_used = 0;             ///< of the mask's alpha, the part that lies on the clump
+  std::uint32_t inverted = 0;       ///< of the simplices on which it can be seen: those that it shows in mirror image
   std::vector<std::uint32_t> shown; ///< clump simplices (local numbers) on which it can be seen
   std::vector<float> let_through;   ///< for each of them, its samples' 1 − alpha, one after the other
 };
