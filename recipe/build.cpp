@@ -5,6 +5,7 @@
 #include "recipe/stage_keys.h"
 #include "recipe/steps.h"
 #include "volume/base/error.h"
+#include "volume/cut/divide.h"
 #include "volume/exemplar/procedural.h"
 #include "volume/io/atomic_file.h"
 #include "volume/io/exemplar_io.h"
@@ -168,10 +169,15 @@ private:
     KeyMaker tets = run_.key("tets").add(surface_key_);
     Key meshed = add(tets, recipe_.tetrahedralize).key();
     run_.announce("tets", meshed);
-    KeyMaker refined = run_.key("refine").add(meshed);
+    meshed_keys_.push_back(meshed);
+    for (std::size_t k = 0; k < recipe_.divides.size(); ++k) {
+      KeyMaker divided = run_.key("divide").add(meshed_keys_.back());
+      meshed_keys_.push_back(add(divided, recipe_.divides[k]).key());
+      run_.announce(numbered("divide", k), meshed_keys_.back());
+    }
+    KeyMaker refined = run_.key("refine").add(meshed_keys_.back());
     for (const std::vector<Vec3d>& stroke : axis_strokes()) refined.add(stroke);
     tets_key_ = refined.key();
-    meshed_key_ = meshed;
     run_.announce("refine", tets_key_);
     for (std::size_t i = 0; i < recipe_.solids.size(); ++i) {
       const Solid& solid = recipe_.solids[i];
@@ -241,7 +247,7 @@ private:
   /// The root: what TetGen made, refined once for all that follows.
   std::shared_ptr<const TetrahedralizeResult> root() {
     return run_.result<TetrahedralizeResult>("refine", tets_key_, true, [&](const Progress&) {
-      const auto meshed = tets();
+      const auto meshed = divided(recipe_.divides.size());
       TetrahedralizeResult result = *meshed;
       RefineResult refined = refine(meshed->mesh, meshed->input, {.stroke = axis_strokes()});
       result.mesh = std::move(refined.mesh);
@@ -250,8 +256,24 @@ private:
     });
   }
 
+  /// The mesh after the first `count` divides: the last that is remembered, and from there on one by one.
+  std::shared_ptr<const TetrahedralizeResult> divided(std::size_t count) {
+    if (count == 0) return tets();
+    const std::size_t k = count - 1;
+    return run_.result<TetrahedralizeResult>(numbered("divide", k), meshed_keys_[count], true, [&](const Progress&) {
+      TetrahedralizeResult result = *divided(k);
+      const DivideStep& step = recipe_.divides[k];
+      const std::string at = where("/divide/" + std::to_string(k));
+      DivideResult parted = divide(result.mesh, result.input, *level_set_of(step.shape, at),
+                                   {.only = step.only, .snap = step.snap}, at);
+      result.mesh = std::move(parted.mesh);
+      result.input = std::move(parted.input);
+      return result;
+    });
+  }
+
   std::shared_ptr<const TetrahedralizeResult> tets() {
-    return run_.result<TetrahedralizeResult>("tets", meshed_key_, true, [&](const Progress& progress) {
+    return run_.result<TetrahedralizeResult>("tets", meshed_keys_[0], true, [&](const Progress& progress) {
       const auto surface = run_.result<TriMesh>("surface", surface_key_, false, [&](const Progress&) {
         return read_tri_mesh(surface_path_, recipe_.surface.scale);
       });
@@ -270,7 +292,7 @@ private:
       const Solid& solid = recipe_.solids[i];
       if (solid.region >= regions)
         throw InvalidInput(solid_path(i) + "/region", "is " + std::to_string(solid.region),
-                           "the surface encloses " + std::to_string(regions) + " region(s), counted from 0");
+                           "the solid has " + std::to_string(regions) + " region(s), counted from 0");
       if (solid.kind == Solid::Kind::plain)
         model.layer.push_back(plain_layer(model.mesh, solid.region, solid.color, "plain " + std::to_string(i)));
       else
@@ -400,7 +422,8 @@ private:
   const Recipe& recipe_;
   const fs::path& folder_;
   fs::path surface_path_;
-  Key surface_key_, meshed_key_, tets_key_;
+  Key surface_key_, tets_key_;
+  std::vector<Key> meshed_keys_; ///< after meshing, and after each divide
   std::vector<SolidKeys> solid_keys_;
   std::vector<FillReport> fills_;
   std::vector<Key> step_keys_;

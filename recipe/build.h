@@ -1,8 +1,9 @@
 #pragma once
 // From a recipe to a model: a chain of pure stages, each remembered under the key of all that it depends on.
 //
-//   surface → tets → refine → per solid: depth, along, around → frames ┐
-//                                                      exemplar ──────┴→ fill
+//   surface → tets → divide 0 → divide 1 → … → refine
+//   refine → per solid: depth, along, around → frames ┐
+//                                     exemplar ───────┴→ fill
 //   refine → cut 0 → cut 1 → … → move 0 → …
 //
 // A changed stroke re-does only what depends on it; an appended cut runs only that cut.

@@ -44,17 +44,25 @@ TetrahedralizeOptions tetrahedralize_from(const JsonNode& node) {
 }
 
 DepthConstraint depth_from(const JsonNode& node) {
-  node.object({"skin", "triangles", "stroke", "value"});
+  node.object({"skin", "outside", "interface", "triangles", "stroke", "value"});
   DepthConstraint result;
   result.value = node.at("value").number({0, 1, false, "0 to 1", "0 is the outermost depth, 1 the innermost"});
-  const int places = node.has("skin") + node.has("triangles") + node.has("stroke");
+  const int places =
+      node.has("skin") + node.has("outside") + node.has("interface") + node.has("triangles") + node.has("stroke");
   if (places != 1)
     node.fail(places == 0 ? "names no place" : "names more than one place",
-              "give exactly one of \"skin\": true, \"triangles\" and \"stroke\"");
+              "give exactly one of \"skin\": true, \"outside\": true, \"interface\", \"triangles\" and \"stroke\"");
   if (const auto skin = node.find("skin")) {
     result.skin = skin->boolean();
     if (!result.skin) skin->fail("is false, which names no place", "write true, or remove the entry");
   }
+  if (const auto outside = node.find("outside")) {
+    result.outside = outside->boolean();
+    if (!result.outside) outside->fail("is false, which names no place", "write true, or remove the entry");
+  }
+  if (const auto interface = node.find("interface"))
+    result.interface =
+        static_cast<std::int32_t>(interface->whole(0, 1'000'000, "name the region on the other side, from 0"));
   if (const auto triangles = node.find("triangles"))
     for (const JsonNode& triangle : triangles->items(1, "name input triangles, from 0"))
       result.triangles.emplace_back(triangle.whole(0, 0xfffffffeLL, "give the number of an input triangle, from 0"));
@@ -78,6 +86,15 @@ void refuse_contradictions(const JsonNode& node, const std::vector<DepthConstrai
   for (std::size_t i = 0; i < depth.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       if (depth[i].value == depth[j].value) continue;
+      if (depth[i].outside && depth[j].outside)
+        node.fail("gives the outside two depths", "keep one of the \"outside\" entries");
+      if (depth[i].interface && depth[i].interface == depth[j].interface)
+        node.fail("gives the interface with region " + std::to_string(*depth[i].interface) + " two depths",
+                  "keep one of the entries");
+      if ((depth[i].skin && (depth[j].outside || depth[j].interface)) ||
+          (depth[j].skin && (depth[i].outside || depth[i].interface)))
+        node.fail("gives a part of the skin a depth of its own beside \"skin\"",
+                  "name the parts by \"outside\" and \"interface\" instead of \"skin\"");
       for (const TriangleId t : depth[i].triangles)
         if (std::find(depth[j].triangles.begin(), depth[j].triangles.end(), t) != depth[j].triangles.end())
           node.fail("gives input triangle " + std::to_string(t) + " two " + noun + "s (entries " + std::to_string(j) +
@@ -178,8 +195,8 @@ Solid solid_from(const JsonNode& node) {
   if (!node.is_object()) node.object({});
   const std::size_t type = node.at("type").choice({"plain", "0", "1-a", "1-b", "2-a", "2-b", "2-c", "2-d"});
   if (const auto region = node.find("region"))
-    result.region =
-        static_cast<std::int32_t>(region->whole(0, 1'000'000, "regions count from 0, one per closed shell"));
+    result.region = static_cast<std::int32_t>(
+        region->whole(0, 1'000'000, "regions count from 0, one per closed shell, then those made by \"divide\""));
   if (type == 0) {
     node.object({"type", "region", "color"});
     result.kind = Solid::Kind::plain;
@@ -221,7 +238,7 @@ Solid solid_from(const JsonNode& node) {
 Recipe parse_recipe(const std::string& text, const std::string& file) {
   const nlohmann::json document = json_of(text, file);
   const JsonNode root(document, file);
-  root.object({"pith", "name", "surface", "tetrahedralize", "solids", "cuts", "moves", "view", "scene"});
+  root.object({"pith", "name", "surface", "tetrahedralize", "divide", "solids", "cuts", "moves", "view", "scene"});
   Recipe result;
   result.file = file;
   root.at("pith").whole(format_version, format_version, "this program reads version 1 of the format");
@@ -231,6 +248,8 @@ Recipe parse_recipe(const std::string& text, const std::string& file) {
     result.name = std::filesystem::path(file).stem().string();
   result.surface = surface_from(root.at("surface"));
   if (const auto options = root.find("tetrahedralize")) result.tetrahedralize = tetrahedralize_from(*options);
+  if (const auto divides = root.find("divide"))
+    for (const JsonNode& entry : divides->items(0, "")) result.divides.push_back(divide_from(entry));
   if (const auto solids = root.find("solids"))
     for (const JsonNode& entry : solids->items(0, "")) {
       Solid solid = solid_from(entry);

@@ -8,11 +8,17 @@ namespace pith {
 namespace {
 
 PlaneCut plane_from(const JsonNode& node) {
-  node.object({"normal", "offset"});
+  node.object({"normal", "offset", "waves"});
   PlaneCut result;
   result.normal = node.at("normal").vector3();
   if (!(result.normal.norm() > 0)) node.at("normal").fail("has no length", "give a direction such as [0, 0, 1]");
   node.optional_number("offset", result.offset, range::any);
+  if (const auto waves = node.find("waves")) {
+    waves->object({"amplitude", "length", "seed"});
+    result.waves.amplitude = waves->at("amplitude").number(range::mm);
+    result.waves.length = waves->at("length").number(range::positive_mm);
+    waves->optional_seed("seed", result.waves.seed);
+  }
   return result;
 }
 
@@ -48,6 +54,17 @@ PiecePlacement placement_from(const JsonNode& node) {
   return result;
 }
 
+/// The one shape of a cut or a divide.
+LevelSetShape shape_from(const JsonNode& node) {
+  const int shapes = node.has("plane") + node.has("sphere") + node.has("stroke");
+  if (shapes != 1)
+    node.fail(shapes == 0 ? "has no shape" : "has more than one shape",
+              "give exactly one of \"plane\", \"sphere\" and \"stroke\"");
+  if (const auto plane = node.find("plane")) return plane_from(*plane);
+  if (const auto sphere = node.find("sphere")) return sphere_from(*sphere);
+  return stroke_from(node.at("stroke"));
+}
+
 } // namespace
 
 StrokeCut stroke_from(const JsonNode& node) {
@@ -79,16 +96,31 @@ View view_from(const JsonNode& node) {
   return result;
 }
 
+DivideStep divide_from(const JsonNode& node) {
+  node.object({"plane", "sphere", "stroke", "only", "snap"});
+  DivideStep result;
+  result.shape = shape_from(node);
+  if (const auto only = node.find("only")) {
+    const auto region_from = [](const JsonNode& entry) {
+      return static_cast<std::int32_t>(entry.whole(0, 1'000'000, "name a region, from 0"));
+    };
+    if (!only->is_array()) {
+      result.only = {region_from(*only)};
+    } else {
+      for (const JsonNode& entry : only->items(1, "name regions, or leave it out to divide all"))
+        result.only.push_back(region_from(entry));
+      std::sort(result.only.begin(), result.only.end());
+      result.only.erase(std::unique(result.only.begin(), result.only.end()), result.only.end());
+    }
+  }
+  node.optional_number("snap", result.snap, {0, 0.4, false, "0 to 0.4", "give a fraction of an edge"});
+  return result;
+}
+
 CutStep cut_from(const JsonNode& node) {
   node.object({"plane", "sphere", "stroke", "keep", "spread", "snap", "only", "placements"});
   CutStep result;
-  const int shapes = node.has("plane") + node.has("sphere") + node.has("stroke");
-  if (shapes != 1)
-    node.fail(shapes == 0 ? "has no shape" : "has more than one shape",
-              "give exactly one of \"plane\", \"sphere\" and \"stroke\"");
-  if (const auto plane = node.find("plane")) result.shape = plane_from(*plane);
-  if (const auto sphere = node.find("sphere")) result.shape = sphere_from(*sphere);
-  if (const auto stroke = node.find("stroke")) result.shape = stroke_from(*stroke);
+  result.shape = shape_from(node);
   if (const auto keep = node.find("keep")) result.keep = static_cast<Keep>(keep->choice({"both", "left", "right"}));
   node.optional_number("spread", result.spread, range::mm);
   node.optional_number("snap", result.snap, {0, 0.4, false, "0 to 0.4", "give a fraction of an edge"});

@@ -37,7 +37,7 @@ struct Solid {
     lapped ///< a lapped solid texture of `fill.type`
   };
   Kind kind = Kind::lapped;
-  std::int32_t region = 0;    ///< one per closed shell of the surface, 0, 1, 2 … from the outside in
+  std::int32_t region = 0;    ///< one per closed shell of the surface, 0, 1, 2 … from the outside in; then divides'
   Vec3d color{0.5, 0.5, 0.5}; ///< plain: linear Rec.709
 
   // Which of these a type takes: traits_of(fill.type).
@@ -62,9 +62,17 @@ struct PiecePlacement {
   Rigid placement;
 };
 
+/// Parts regions of the mesh before anything is put on it: layers that lie on one another. Left of the shape (rest
+/// space) a region keeps its number, right of it the numbers after the largest go on, in the order of the regions.
+struct DivideStep {
+  LevelSetShape shape;
+  std::vector<std::int32_t> only; ///< regions to divide; empty: all that the shape passes through
+  double snap = 0.2;              ///< DivideOptions::snap
+};
+
 /// One cut. The shape is given in world space, where the pieces stand.
 struct CutStep {
-  std::variant<PlaneCut, SphereCut, StrokeCut> shape;
+  LevelSetShape shape;
   Keep keep = Keep::both;
   double spread = 0;                      ///< mm by which the halves are moved apart afterwards
   double snap = 0.01;                     ///< CutOptions::snap
@@ -87,11 +95,12 @@ struct Recipe {
   std::string name;
   SurfaceSource surface;
   TetrahedralizeOptions tetrahedralize;
-  std::vector<Solid> solids;   ///< regions without a solid become plain grey
-  std::vector<CutStep> cuts;   ///< a fold: each works on what the earlier ones left
-  std::vector<MoveStep> moves; ///< a fold, after all cuts
-  std::optional<View> view;    ///< where to look from, for pictures
-  std::string scene;           ///< a scene file for pictures, relative to the recipe's folder; may be empty
+  std::vector<DivideStep> divides; ///< a fold: each works on the regions that the earlier ones left
+  std::vector<Solid> solids;       ///< regions without a solid become plain grey
+  std::vector<CutStep> cuts;       ///< a fold: each works on what the earlier ones left
+  std::vector<MoveStep> moves;     ///< a fold, after all cuts
+  std::optional<View> view;        ///< where to look from, for pictures
+  std::string scene;               ///< a scene file for pictures, relative to the recipe's folder; may be empty
 };
 
 /// Reads JSON text. `file` is what messages call it. Errors: InvalidInput, naming the place as a path into the

@@ -7,6 +7,20 @@ void add_view(KeyMaker& maker, const View& view) {
   maker.add(view.eye).add(view.target).add(view.up).add(view.vertical_angle).add(view.height);
 }
 
+KeyMaker& add(KeyMaker& maker, const LevelSetShape& shape) {
+  maker.add(static_cast<std::uint64_t>(shape.index()));
+  if (const auto* plane = std::get_if<PlaneCut>(&shape)) {
+    maker.add(plane->normal).add(plane->offset);
+    maker.add(plane->waves.amplitude).add(plane->waves.length).add(plane->waves.seed);
+  }
+  if (const auto* sphere = std::get_if<SphereCut>(&shape)) maker.add(sphere->center).add(sphere->radius);
+  if (const auto* stroke = std::get_if<StrokeCut>(&shape)) {
+    maker.add(stroke->point);
+    add_view(maker, stroke->view);
+  }
+  return maker;
+}
+
 } // namespace
 
 KeyMaker& add(KeyMaker& maker, const TetrahedralizeOptions& options) {
@@ -22,7 +36,12 @@ KeyMaker& add(KeyMaker& maker, const TetrahedralizeOptions& options) {
 KeyMaker& add(KeyMaker& maker, const std::vector<DepthConstraint>& constraints) {
   maker.add(static_cast<std::uint64_t>(constraints.size()));
   for (const DepthConstraint& one : constraints) {
-    maker.add(one.value).add(one.skin).add(one.stroke).add(static_cast<std::uint64_t>(one.triangles.size()));
+    maker.add(one.value)
+        .add(one.skin)
+        .add(one.outside)
+        .add(one.interface.value_or(-1))
+        .add(one.stroke)
+        .add(static_cast<std::uint64_t>(one.triangles.size()));
     for (const TriangleId triangle : one.triangles) maker.add(static_cast<std::uint64_t>(triangle.value));
   }
   return maker;
@@ -78,14 +97,14 @@ KeyMaker& add(KeyMaker& maker, const LapOptions& options) {
       .add(mask.seed);
 }
 
+KeyMaker& add(KeyMaker& maker, const DivideStep& step) {
+  add(maker, step.shape).add(static_cast<std::uint64_t>(step.only.size()));
+  for (const std::int32_t region : step.only) maker.add(static_cast<int>(region));
+  return maker.add(step.snap);
+}
+
 KeyMaker& add(KeyMaker& maker, const CutStep& step) {
-  maker.add(static_cast<std::uint64_t>(step.shape.index()));
-  if (const auto* plane = std::get_if<PlaneCut>(&step.shape)) maker.add(plane->normal).add(plane->offset);
-  if (const auto* sphere = std::get_if<SphereCut>(&step.shape)) maker.add(sphere->center).add(sphere->radius);
-  if (const auto* stroke = std::get_if<StrokeCut>(&step.shape)) {
-    maker.add(stroke->point);
-    add_view(maker, stroke->view);
-  }
+  add(maker, step.shape);
   maker.add(static_cast<int>(step.keep)).add(step.spread).add(step.snap).add(step.only);
   maker.add(static_cast<std::uint64_t>(step.placements.size()));
   for (const PiecePlacement& stood : step.placements) {

@@ -12,6 +12,7 @@ KeyMaker& add(KeyMaker& maker, const std::vector<AxisStroke>& strokes);
 KeyMaker& add(KeyMaker& maker, const std::vector<ScaleConstraint>& constraints);
 KeyMaker& add(KeyMaker& maker, const FrameOptions& options);
 KeyMaker& add(KeyMaker& maker, const LapOptions& options);
+KeyMaker& add(KeyMaker& maker, const DivideStep& step);
 KeyMaker& add(KeyMaker& maker, const CutStep& step);
 KeyMaker& add(KeyMaker& maker, const MoveStep& step);
 

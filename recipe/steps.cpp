@@ -15,12 +15,6 @@ std::string text_of(const Vec3d& x) {
   return text.str();
 }
 
-std::unique_ptr<LevelSet> level_set_of(const CutStep& step, const std::string& where) {
-  if (const auto* plane = std::get_if<PlaneCut>(&step.shape)) return level_set_of(*plane, where + "/plane");
-  if (const auto* sphere = std::get_if<SphereCut>(&step.shape)) return level_set_of(*sphere, where + "/sphere");
-  return level_set_of(std::get<StrokeCut>(step.shape), where + "/stroke");
-}
-
 } // namespace
 
 std::uint32_t piece_named(const Pieces& pieces, const TetMesh& root, const Locator& locator, const Vec3d& point,
@@ -51,7 +45,7 @@ Vec3d rest_point_in(const Pieces& pieces, std::uint32_t piece, const TetMesh& ro
 
 CutResult apply_cut(Pieces& pieces, const TetMesh& root, const Boundary& boundary, const Locator& locator,
                     const CutStep& step, const std::string& where) {
-  const std::unique_ptr<LevelSet> level_set = level_set_of(step, where);
+  const std::unique_ptr<LevelSet> level_set = level_set_of(step.shape, where);
   Pieces work = pieces;
   for (std::size_t i = 0; i < step.placements.size(); ++i) {
     const PiecePlacement& stood = step.placements[i];

@@ -45,6 +45,8 @@ json json_from(const TetrahedralizeOptions& options) {
 json json_from(const DepthConstraint& constraint) {
   json result = json::object();
   if (constraint.skin) result["skin"] = true;
+  if (constraint.outside) result["outside"] = true;
+  if (constraint.interface) result["interface"] = *constraint.interface;
   if (!constraint.triangles.empty()) {
     json triangles = json::array();
     for (const TriangleId t : constraint.triangles) triangles.push_back(t.value);
@@ -152,14 +154,29 @@ json json_from(const View& view) {
   return result;
 }
 
+void put_shape(json& into, const LevelSetShape& shape) {
+  if (const auto* plane = std::get_if<PlaneCut>(&shape)) {
+    into["plane"] = {{"normal", json_from(plane->normal)}, {"offset", plane->offset}};
+    if (const Waves& waves = plane->waves; waves.amplitude > 0)
+      into["plane"]["waves"] = {{"amplitude", waves.amplitude}, {"length", waves.length}, {"seed", waves.seed}};
+  }
+  if (const auto* sphere = std::get_if<SphereCut>(&shape))
+    into["sphere"] = {{"center", json_from(sphere->center)}, {"radius", sphere->radius}};
+  if (const auto* stroke = std::get_if<StrokeCut>(&shape))
+    into["stroke"] = {{"points", json_from(stroke->point)}, {"view", json_from(stroke->view)}};
+}
+
+json json_from(const DivideStep& divide) {
+  json result = json::object();
+  put_shape(result, divide.shape);
+  if (!divide.only.empty()) result["only"] = divide.only;
+  put(result, "snap", divide.snap, DivideStep().snap);
+  return result;
+}
+
 json json_from(const CutStep& cut) {
   json result = json::object();
-  if (const auto* plane = std::get_if<PlaneCut>(&cut.shape))
-    result["plane"] = {{"normal", json_from(plane->normal)}, {"offset", plane->offset}};
-  if (const auto* sphere = std::get_if<SphereCut>(&cut.shape))
-    result["sphere"] = {{"center", json_from(sphere->center)}, {"radius", sphere->radius}};
-  if (const auto* stroke = std::get_if<StrokeCut>(&cut.shape))
-    result["stroke"] = {{"points", json_from(stroke->point)}, {"view", json_from(stroke->view)}};
+  put_shape(result, cut.shape);
   if (cut.keep != Keep::both) result["keep"] = cut.keep == Keep::left ? "left" : "right";
   put(result, "spread", cut.spread, 0.0);
   put(result, "snap", cut.snap, CutStep().snap);
@@ -238,6 +255,7 @@ std::string recipe_text(const Recipe& recipe) {
   document["surface"] = {{"file", recipe.surface.file}};
   put(document["surface"], "scale", recipe.surface.scale, 1.0);
   put_object(document, "tetrahedralize", json_from(recipe.tetrahedralize));
+  put_list(document, "divide", recipe.divides);
   put_list(document, "solids", recipe.solids);
   put_list(document, "cuts", recipe.cuts);
   put_list(document, "moves", recipe.moves);

@@ -239,7 +239,7 @@ TEST_F(Build, WhatDoesNotFitItsInputsIsRefusedByPlace) {
   EXPECT_EQ(message(broken).find("ball.json: /surface/file: \"gone.obj\" does not exist; "), 0u) << message(broken);
   broken = recipe;
   broken.solids[0].region = 4;
-  EXPECT_EQ(message(broken).find("ball.json: /solids/0/region: is 4; the surface encloses 1 region"), 0u)
+  EXPECT_EQ(message(broken).find("ball.json: /solids/0/region: is 4; the solid has 1 region"), 0u)
       << message(broken);
   broken = recipe;
   broken.solids[0].exemplar.file = "gone.exemplar";

@@ -1,10 +1,12 @@
-// Planes, spheres, and values of many points.
+// Planes, flat and wavy, spheres, and values of many points.
 #include "volume/cut/level_set.h"
 
 #include "volume/base/error.h"
 #include "volume/base/parallel.h"
+#include "volume/base/random.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace pith {
 namespace {
@@ -21,6 +23,54 @@ public:
 private:
   Vec3d normal_;
   double offset_;
+};
+
+/// A plane with waves on it: φ(x) = n·x − offset − h(x), where h depends on the place along the plane only, so that
+/// |∇φ| ≥ 1 everywhere. h = amplitude · tanh(g); g is a sum of plane waves of random directions and phases, with
+/// lengths spread around the one asked for, and has about unit variance.
+class WavyPlane final : public LevelSet {
+public:
+  WavyPlane(const Vec3d& normal, double offset, const Waves& waves)
+      : normal_(normal), offset_(offset), amplitude_(waves.amplitude) {
+    int least = 0; // the axis least aligned with the normal
+    normal.cwiseAbs().minCoeff(&least);
+    const Vec3d across = normal.cross(Vec3d::Unit(least)).normalized(), along = normal.cross(across);
+    Random random(waves.seed, wave_stage);
+    for (int i = 0; i < wave_count; ++i) {
+      // Directions are stratified, so that no seed leaves a direction out.
+      const double angle = std::numbers::pi * (i + random.uniform()) / wave_count;
+      const double length = waves.length * std::exp2(random.uniform(-0.6, 1.0));
+      wave_[i] = 2 * std::numbers::pi / length * (std::cos(angle) * across + std::sin(angle) * along);
+      phase_[i] = 2 * std::numbers::pi * random.uniform();
+    }
+  }
+
+  double value(const Vec3d& x) const override {
+    double g = 0;
+    for (int i = 0; i < wave_count; ++i) g += std::cos(wave_[i].dot(x) + phase_[i]);
+    return normal_.dot(x) - offset_ - amplitude_ * std::tanh(height * g);
+  }
+  Vec3d gradient(const Vec3d& x) const override {
+    double g = 0;
+    Vec3d slope = Vec3d::Zero();
+    for (int i = 0; i < wave_count; ++i) {
+      const double at = wave_[i].dot(x) + phase_[i];
+      g += std::cos(at);
+      slope -= std::sin(at) * wave_[i];
+    }
+    const double t = std::tanh(height * g);
+    return normal_ - amplitude_ * height * (1 - t * t) * slope;
+  }
+
+private:
+  static constexpr int wave_count = 16;
+  static constexpr double height = 0.35355339059327373; ///< √(2 / wave_count)
+  static constexpr std::uint64_t wave_stage = 0x7761766573;
+
+  Vec3d normal_;
+  double offset_, amplitude_;
+  std::array<Vec3d, wave_count> wave_;
+  std::array<double, wave_count> phase_;
 };
 
 class Sphere final : public LevelSet {
@@ -49,7 +99,14 @@ std::unique_ptr<LevelSet> level_set_of(const PlaneCut& plane, const std::string&
   if (!std::isfinite(length) || !std::isfinite(plane.offset))
     throw InvalidInput(where, "the normal or the offset is not a finite number", "give finite numbers");
   if (!(length > 0)) throw InvalidInput(where, "the normal is zero", "give a normal of some length");
-  return std::make_unique<Plane>(plane.normal / length, plane.offset / length);
+  const Waves& waves = plane.waves;
+  if (!(waves.amplitude >= 0) || !std::isfinite(waves.amplitude))
+    throw InvalidInput(where, "the waves' amplitude is " + std::to_string(waves.amplitude) + " mm", "give 0 or more");
+  if (waves.amplitude == 0) return std::make_unique<Plane>(plane.normal / length, plane.offset / length);
+  if (!(waves.length > 0) || !std::isfinite(waves.length))
+    throw InvalidInput(where, "the waves' length is " + std::to_string(waves.length) + " mm",
+                       "give a positive length");
+  return std::make_unique<WavyPlane>(plane.normal / length, plane.offset / length, waves);
 }
 
 std::unique_ptr<LevelSet> level_set_of(const SphereCut& sphere, const std::string& where) {
@@ -58,6 +115,12 @@ std::unique_ptr<LevelSet> level_set_of(const SphereCut& sphere, const std::strin
   if (!(sphere.radius > 0))
     throw InvalidInput(where, "the radius is " + std::to_string(sphere.radius) + " mm", "give a positive radius");
   return std::make_unique<Sphere>(sphere.center, sphere.radius);
+}
+
+std::unique_ptr<LevelSet> level_set_of(const LevelSetShape& shape, const std::string& where) {
+  if (const auto* plane = std::get_if<PlaneCut>(&shape)) return level_set_of(*plane, where + "/plane");
+  if (const auto* sphere = std::get_if<SphereCut>(&shape)) return level_set_of(*sphere, where + "/sphere");
+  return level_set_of(std::get<StrokeCut>(shape), where + "/stroke");
 }
 
 } // namespace pith

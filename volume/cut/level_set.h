@@ -6,6 +6,8 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <variant>
+#include <vector>
 
 namespace pith {
 
@@ -22,10 +24,19 @@ public:
   virtual bool linear() const { return false; }
 };
 
-/// normal · x = offset; `normal` need not have unit length. Right (positive) is where the normal points.
+/// Smooth hills and valleys on a plane, as between the layers of a rock: random plane waves (a Gaussian random
+/// field), softly bounded, so that no point is farther than `amplitude` from the plane. Planes of equal normal and
+/// waves run alongside one another at any offset and never meet.
+struct Waves {
+  double amplitude = 0;   ///< mm; 0: flat
+  double length = 10;     ///< mm from hill to hill, about
+  std::uint64_t seed = 1; ///< which waves
+};
+/// normal · x = offset (+ waves); `normal` need not have unit length. Right (positive) is where the normal points.
 struct PlaneCut {
   Vec3d normal{0, 0, 1};
   double offset = 0;
+  Waves waves = {};
 };
 /// Outside of the sphere is positive.
 struct SphereCut {
@@ -47,11 +58,17 @@ struct StrokeCut {
   View view;
 };
 
-/// Throws InvalidInput (`where` names the field in the message) when the shape is degenerate: a zero normal, a radius
-/// that is not positive, a stroke of fewer than two distinct points, one that crosses itself or its continuations, a
-/// view without direction, numbers that are not finite. Cost: a stroke ~0.3 ms (the spline), the others none.
+/// What a recipe can cut or divide with.
+using LevelSetShape = std::variant<PlaneCut, SphereCut, StrokeCut>;
+
+/// Throws InvalidInput (`where` names the field in the message) when the shape is degenerate: a zero normal, waves of
+/// no length or of negative amplitude, a radius that is not positive, a stroke of fewer than two distinct points, one
+/// that crosses itself or its continuations, a view without direction, numbers that are not finite. Cost: a stroke
+/// ~0.3 ms (the spline), the others none.
 std::unique_ptr<LevelSet> level_set_of(const PlaneCut& plane, const std::string& where = "plane");
 std::unique_ptr<LevelSet> level_set_of(const SphereCut& sphere, const std::string& where = "sphere");
 std::unique_ptr<LevelSet> level_set_of(const StrokeCut& stroke, const std::string& where = "stroke");
+/// The same for any shape; `where` is the step that holds it: "/plane", "/sphere" or "/stroke" is added.
+std::unique_ptr<LevelSet> level_set_of(const LevelSetShape& shape, const std::string& where);
 
 } // namespace pith

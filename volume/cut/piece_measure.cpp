@@ -3,6 +3,7 @@
 #include "volume/base/parallel.h"
 #include "volume/cut/piece.h"
 #include "volume/mesh/orientation.h"
+#include "volume/mesh/region_measure.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -16,20 +17,6 @@ namespace {
 using Corners = std::array<Vec3d, 4>;
 
 double signed_volume(const Corners& p) { return (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]) / 6; }
-
-/// The smallest of the six angles between faces, by their outward normals.
-double smallest_dihedral(const Corners& p) {
-  std::array<Vec3d, 4> normal;
-  for (int i = 0; i < 4; ++i) {
-    const auto& c = facet_corners[i];
-    normal[i] = (p[c[1]] - p[c[0]]).cross(p[c[2]] - p[c[0]]);
-  }
-  double smallest = std::numbers::pi;
-  for (int i = 0; i < 4; ++i)
-    for (int j = i + 1; j < 4; ++j)
-      smallest = std::min(smallest, std::atan2(normal[i].cross(normal[j]).norm(), -normal[i].dot(normal[j])));
-  return smallest;
-}
 
 /// The smallest of the four barycentric coordinates of x.
 double smallest_barycentric(const Corners& p, const Vec3d& x) {

@@ -64,16 +64,22 @@ struct Gathering {
   double diagonal = 0;
   DepthPlaces places;
   std::vector<Held> held;
+  PerVertex<std::uint8_t> by_part = {}; ///< 1: held by the outside or an interface alone; 2: a rim of two such parts
 
-  void hold_facet(FacetId facet, double value) {
+  void hold_facet(FacetId facet, double value, bool part = false) {
     Held h{.corner = {}, .value = value};
+    by_part.resize(mesh.vertex_count(), 0);
     for (int k = 0; k < 3; ++k) {
       const VertexId v = boundary.corner[facet][k];
       float& prescribed = places.prescribed[v];
-      if (!std::isnan(prescribed) && prescribed != static_cast<float>(value))
-        refuse_contradiction(where, prescribed, value, mesh.position[v]);
-      prescribed = static_cast<float>(value);
       h.corner[k] = mesh.position[v];
+      if (!std::isnan(prescribed) && prescribed != static_cast<float>(value)) {
+        if (!part || by_part[v] == 0) refuse_contradiction(where, prescribed, value, mesh.position[v]);
+        by_part[v] = 2;
+        continue;
+      }
+      if (std::isnan(prescribed)) by_part[v] = part;
+      prescribed = static_cast<float>(value);
     }
     held.push_back(h);
   }
@@ -81,6 +87,30 @@ struct Gathering {
   void hold_skin(double value) {
     for (const FacetId f : all_ids<FacetId>(boundary.facet_count()))
       if (mesh.region[boundary.tet[f]] == region) hold_facet(f, value);
+  }
+
+  /// The facets with nothing behind (no `beyond`), or with that region behind.
+  void hold_part(std::optional<std::int32_t> beyond, double value, const std::string& name) {
+    std::size_t found = 0;
+    for (const FacetId f : all_ids<FacetId>(boundary.facet_count())) {
+      if (mesh.region[boundary.tet[f]] != region) continue;
+      const TetId behind = boundary.behind[f];
+      if (beyond ? !behind.exists() || mesh.region[behind] != *beyond : behind.exists()) continue;
+      hold_facet(f, value, true);
+      ++found;
+    }
+    if (found > 0) return;
+    if (!beyond)
+      throw InvalidInput(name,
+                         "region " + std::to_string(region) + " has no outside: other regions lie all around it",
+                         "name an interface instead");
+    throw InvalidInput(name, "region " + std::to_string(region) + " does not touch region " + std::to_string(*beyond),
+                       "name a region that lies beside it (pith info lists them)");
+  }
+
+  void free_rims() {
+    for (std::size_t v = 0; v < by_part.size(); ++v)
+      if (by_part[VertexId(v)] == 2) places.prescribed[VertexId(v)] = std::numeric_limits<float>::quiet_NaN();
   }
 
   void hold_triangles(const std::vector<TriangleId>& triangles, double value, const std::string& name) {
@@ -202,9 +232,13 @@ DepthPlaces depth_places(const TetMesh& mesh, const Boundary& boundary, std::int
     if (!(constraint.value >= 0 && constraint.value <= 1))
       throw InvalidInput(name, "depth " + text_of(constraint.value) + " lies outside [0, 1]",
                          "use 0 for the outermost and 1 for the innermost part");
-    if (!constraint.skin && constraint.triangles.empty() && constraint.stroke.empty())
-      throw InvalidInput(name, "the constraint names no place", "give it the skin, triangles or a stroke");
+    if (!constraint.skin && !constraint.outside && !constraint.interface && constraint.triangles.empty() &&
+        constraint.stroke.empty())
+      throw InvalidInput(name, "the constraint names no place",
+                         "give it the skin, the outside, an interface, triangles or a stroke");
     if (constraint.skin) gathering.hold_skin(constraint.value);
+    if (constraint.outside) gathering.hold_part({}, constraint.value, name);
+    if (constraint.interface) gathering.hold_part(constraint.interface, constraint.value, name);
     if (!constraint.triangles.empty()) gathering.hold_triangles(constraint.triangles, constraint.value, name);
     if (!constraint.stroke.empty())
       gathering.hold_stroke(constraint.stroke, constraint.value, options.stroke_spacing, name);
@@ -216,6 +250,7 @@ DepthPlaces depth_places(const TetMesh& mesh, const Boundary& boundary, std::int
                        "all " + std::to_string(constraints.size()) + " depth constraints have the value " +
                            text_of(constraints[0].value),
                        "give a second place another depth, such as 1 at the core");
+  gathering.free_rims();
   check_strokes(gathering, constraints);
   hold_vertices_on_strokes(gathering, constraints);
   return std::move(gathering.places);
