@@ -51,11 +51,33 @@ void add_quality(const std::filesystem::path& file, Json& pieces, const Session&
   }
 }
 
+/// Tells the regions and returns them as JSON.
+Json region_list(const std::vector<RegionMeasure>& regions, const Session& session) {
+  Json result = Json::array();
+  for (const RegionMeasure& region : regions) {
+    std::string beside;
+    for (const std::int32_t other : region.beside) beside += (beside.empty() ? "" : ", ") + std::to_string(other);
+    session.say(fmt::format("  region {}: {:.6g} mm³, {} tets, {}, smallest dihedral {:.2f}°{}", region.region,
+                            region.volume, region.tets, text_of(region.bounds),
+                            region.minimum_dihedral * 57.29577951308232, beside.empty() ? "" : ", beside " + beside));
+    result.push_back({{"region", region.region},
+                      {"volume", region.volume},
+                      {"tets", region.tets},
+                      {"bounds", json_from(region.bounds)},
+                      {"minimum_dihedral", region.minimum_dihedral},
+                      {"outside_area", region.outside_area},
+                      {"interface_area", region.interface_area},
+                      {"beside", region.beside}});
+  }
+  return result;
+}
+
 void model_info(const InfoOptions& options, const Session& session) {
   const ModelSummary summary = read_model_summary(options.file);
   session.say(fmt::format("model {}: {} vertices, {} tets, {} boundary facets, {} region(s), {}", summary.name,
                           summary.vertices, summary.tets, summary.facets, summary.regions, text_of(summary.bounds)));
   Json layers = Json::array(), pieces = Json::array();
+  Json regions = region_list(summary.region, session);
   for (const auto& layer : summary.layer) {
     layers.push_back({{"name", layer.name},
                       {"domain", layer.domain},
@@ -98,6 +120,7 @@ void model_info(const InfoOptions& options, const Session& session) {
                  {"lookups", summary.lookups},
                  {"cuts", summary.cuts},
                  {"bounds", json_from(summary.bounds)},
+                 {"region_measures", std::move(regions)},
                  {"layers", std::move(layers)},
                  {"pieces", std::move(pieces)},
                  {"stages", std::move(keys)}});
@@ -151,13 +174,15 @@ void exemplar_info(const InfoOptions& options, const Session& session) {
 
 void recipe_info(const InfoOptions& options, const Session& session) {
   const Recipe recipe = read_recipe(options.file);
-  session.say(fmt::format("recipe {}: surface {}, {} solid(s), {} cut(s), {} move(s)", recipe.name,
-                          recipe.surface.file, recipe.solids.size(), recipe.cuts.size(), recipe.moves.size()));
+  session.say(fmt::format("recipe {}: surface {}, {} divide(s), {} solid(s), {} cut(s), {} move(s)", recipe.name,
+                          recipe.surface.file, recipe.divides.size(), recipe.solids.size(), recipe.cuts.size(),
+                          recipe.moves.size()));
   session.print({{"file", options.file.string()},
                  {"kind", "recipe"},
                  {"bytes", std::filesystem::file_size(options.file)},
                  {"name", recipe.name},
                  {"surface", recipe.surface.file},
+                 {"divides", recipe.divides.size()},
                  {"solids", recipe.solids.size()},
                  {"cuts", recipe.cuts.size()},
                  {"moves", recipe.moves.size()}});

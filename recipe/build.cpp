@@ -172,6 +172,10 @@ private:
     meshed_keys_.push_back(meshed);
     for (std::size_t k = 0; k < recipe_.divides.size(); ++k) {
       KeyMaker divided = run_.key("divide").add(meshed_keys_.back());
+      if (recipe_.divides[k].surface) {
+        const fs::path path = divider_path(k);
+        divided.add(path.extension().string()).add(key_of(file_content(path)));
+      }
       meshed_keys_.push_back(add(divided, recipe_.divides[k]).key());
       run_.announce(numbered("divide", k), meshed_keys_.back());
     }
@@ -256,6 +260,11 @@ private:
     });
   }
 
+  fs::path divider_path(std::size_t k) const {
+    return input_path(folder_, recipe_.divides[k].surface->file,
+                      where("/divide/" + std::to_string(k) + "/surface/file"));
+  }
+
   /// The mesh after the first `count` divides: the last that is remembered, and from there on one by one.
   std::shared_ptr<const TetrahedralizeResult> divided(std::size_t count) {
     if (count == 0) return tets();
@@ -264,8 +273,10 @@ private:
       TetrahedralizeResult result = *divided(k);
       const DivideStep& step = recipe_.divides[k];
       const std::string at = where("/divide/" + std::to_string(k));
-      DivideResult parted = divide(result.mesh, result.input, *level_set_of(step.shape, at),
-                                   {.only = step.only, .snap = step.snap}, at);
+      const auto level_set = step.surface
+                                 ? level_set_of(read_tri_mesh(divider_path(k), step.surface->scale), at + "/surface")
+                                 : level_set_of(step.shape, at);
+      DivideResult parted = divide(result.mesh, result.input, *level_set, {.only = step.only, .snap = step.snap}, at);
       result.mesh = std::move(parted.mesh);
       result.input = std::move(parted.input);
       return result;

@@ -16,14 +16,6 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double endless = std::numeric_limits<double>::infinity();
 constexpr int format_version = 1;
 
-SurfaceSource surface_from(const JsonNode& node) {
-  node.object({"file", "scale"});
-  SurfaceSource result;
-  result.file = node.at("file").text();
-  node.optional_number("scale", result.scale, range::positive);
-  return result;
-}
-
 TetrahedralizeOptions tetrahedralize_from(const JsonNode& node) {
   node.object({"method", "interior_edge", "boundary_edge", "radius_edge", "wrap_alpha", "wrap_offset", "time_limit"});
   TetrahedralizeOptions result;

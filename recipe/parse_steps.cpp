@@ -67,6 +67,14 @@ LevelSetShape shape_from(const JsonNode& node) {
 
 } // namespace
 
+SurfaceSource surface_from(const JsonNode& node) {
+  node.object({"file", "scale"});
+  SurfaceSource result;
+  result.file = node.at("file").text();
+  node.optional_number("scale", result.scale, range::positive);
+  return result;
+}
+
 StrokeCut stroke_from(const JsonNode& node) {
   node.object({"points", "view"});
   StrokeCut result;
@@ -97,9 +105,15 @@ View view_from(const JsonNode& node) {
 }
 
 DivideStep divide_from(const JsonNode& node) {
-  node.object({"plane", "sphere", "stroke", "only", "snap"});
+  node.object({"plane", "sphere", "stroke", "surface", "only", "snap"});
   DivideStep result;
-  result.shape = shape_from(node);
+  if (const auto surface = node.find("surface")) {
+    if (node.has("plane") || node.has("sphere") || node.has("stroke"))
+      node.fail("has more than one shape", "give exactly one of \"plane\", \"sphere\", \"stroke\" and \"surface\"");
+    result.surface = surface_from(*surface);
+  } else {
+    result.shape = shape_from(node);
+  }
   if (const auto only = node.find("only")) {
     const auto region_from = [](const JsonNode& entry) {
       return static_cast<std::int32_t>(entry.whole(0, 1'000'000, "name a region, from 0"));

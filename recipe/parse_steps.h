@@ -6,6 +6,7 @@
 
 namespace pith {
 
+SurfaceSource surface_from(const JsonNode& node);
 DivideStep divide_from(const JsonNode& node);
 CutStep cut_from(const JsonNode& node);
 StrokeCut stroke_from(const JsonNode& node);

@@ -66,8 +66,9 @@ struct PiecePlacement {
 /// space) a region keeps its number, right of it the numbers after the largest go on, in the order of the regions.
 struct DivideStep {
   LevelSetShape shape;
-  std::vector<std::int32_t> only; ///< regions to divide; empty: all that the shape passes through
-  double snap = 0.2;              ///< DivideOptions::snap
+  std::optional<SurfaceSource> surface; ///< in place of `shape`: a surface file; left is inside it
+  std::vector<std::int32_t> only;       ///< regions to divide; empty: all that the shape passes through
+  double snap = 0.2;                    ///< DivideOptions::snap
 };
 
 /// One cut. The shape is given in world space, where the pieces stand.

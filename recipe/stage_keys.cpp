@@ -100,6 +100,8 @@ KeyMaker& add(KeyMaker& maker, const LapOptions& options) {
 KeyMaker& add(KeyMaker& maker, const DivideStep& step) {
   add(maker, step.shape).add(static_cast<std::uint64_t>(step.only.size()));
   for (const std::int32_t region : step.only) maker.add(static_cast<int>(region));
+  maker.add(step.surface.has_value()); // the file's content is the builder's to add
+  if (step.surface) maker.add(step.surface->scale);
   return maker.add(step.snap);
 }
 

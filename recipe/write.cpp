@@ -168,7 +168,12 @@ void put_shape(json& into, const LevelSetShape& shape) {
 
 json json_from(const DivideStep& divide) {
   json result = json::object();
-  put_shape(result, divide.shape);
+  if (divide.surface) {
+    result["surface"] = {{"file", divide.surface->file}};
+    put(result["surface"], "scale", divide.surface->scale, 1.0);
+  } else {
+    put_shape(result, divide.shape);
+  }
   if (!divide.only.empty()) result["only"] = divide.only;
   put(result, "snap", divide.snap, DivideStep().snap);
   return result;

@@ -72,6 +72,31 @@ TEST_F(Cli, TheModelIsTheSameForAnyNumberOfThreadsAndDiffersBySeed) {
   EXPECT_FALSE(bytes("one.pith") == bytes("other.pith"));
 }
 
+TEST_F(Cli, InfoListsTheRegionsThatDividesMade) {
+  write_text(program.folder / "layers.json",
+             R"({"pith": 1, "surface": {"file": "ball.obj"}, "tetrahedralize": {"interior_edge": 6},
+      "divide": [{"plane": {"normal": [0, 0, 1], "offset": -5}}, {"plane": {"normal": [0, 0, 1], "offset": 7}, "only": 1}]})");
+  EXPECT_EQ(run({"info", "layers.json"})["divides"], 2);
+  const json made = run({"make", "layers.json", "-o", "layers.pith"});
+  EXPECT_EQ(made["stages"][2]["name"], "divide 0");
+  EXPECT_EQ(made["stages"][3]["name"], "divide 1");
+  const json info = run({"info", "layers.pith"});
+  EXPECT_EQ(info["regions"], 3);
+  ASSERT_EQ(info["region_measures"].size(), 3u);
+  double sum = 0;
+  for (const json& region : info["region_measures"]) {
+    sum += region["volume"].get<double>();
+    EXPECT_GT(region["minimum_dihedral"], 0.005);
+  }
+  EXPECT_NEAR(sum, info["pieces"][0]["volume"], 1e-9 * sum);
+  EXPECT_EQ(info["region_measures"][1]["beside"], json::array({0, 2}));
+  const auto cap = [](double height) { return M_PI * height * height * (3 * 20 - height) / 3; };
+  EXPECT_NEAR(info["region_measures"][0]["volume"], cap(15), 0.02 * cap(15));
+  EXPECT_NEAR(info["region_measures"][2]["volume"], cap(13), 0.02 * cap(13));
+  const Outcome told = program.run({"info", "layers.pith"});
+  EXPECT_NE(told.output.find("region 2: "), std::string::npos) << told.output;
+}
+
 TEST_F(Cli, InfoAnswersFastAndInFull) {
   make();
   const json info = run({"info", "ball.pith"});

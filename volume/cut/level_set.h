@@ -2,6 +2,7 @@
 // What cuts: scalar functions of space whose zero set is the section. Below zero is the left half, above the right.
 #include "volume/base/types.h"
 #include "volume/base/view.h"
+#include "volume/mesh/tri_mesh.h"
 
 #include <memory>
 #include <span>
@@ -70,5 +71,10 @@ std::unique_ptr<LevelSet> level_set_of(const SphereCut& sphere, const std::strin
 std::unique_ptr<LevelSet> level_set_of(const StrokeCut& stroke, const std::string& where = "stroke");
 /// The same for any shape; `where` is the step that holds it: "/plane", "/sphere" or "/stroke" is added.
 std::unique_ptr<LevelSet> level_set_of(const LevelSetShape& shape, const std::string& where);
+
+/// The signed distance to a surface mesh: closed, left is inside; open, right is where its triangles' normals point,
+/// and beyond the rim it goes on along the rim's tangent planes. It should be oriented and not cross itself. Errors:
+/// InvalidInput when it has no triangles or names vertices that it has not. Cost: O(n log n), a value O(log n).
+std::unique_ptr<LevelSet> level_set_of(const TriMesh& surface, const std::string& where = "surface");
 
 } // namespace pith

@@ -12,12 +12,12 @@ namespace pith {
 /// several add up. Vertices where `outside` and an `interface`, or two interfaces, of different depths meet (the rim
 /// of a layer) are left free.
 struct DepthConstraint {
-  double value = 0;                      ///< 0 … 1
-  bool skin = false;                     ///< the whole boundary of the region, interfaces with other regions included
-  bool outside = false;                  ///< only where nothing lies behind the region's boundary
-  std::optional<std::int32_t> interface; ///< only where this region lies behind it
-  std::vector<TriangleId> triangles;     ///< these input triangles (multi-face and single-face fill)
-  std::vector<Vec3d> stroke;             ///< a polyline in rest space, on the surface or inside; one point is a point
+  double value = 0;     ///< 0 … 1
+  bool skin = false;    ///< the whole boundary of the region, interfaces with other regions included
+  bool outside = false; ///< only where nothing lies behind the region's boundary
+  std::optional<std::int32_t> interface = {}; ///< only where this region lies behind it
+  std::vector<TriangleId> triangles;          ///< these input triangles (multi-face and single-face fill)
+  std::vector<Vec3d> stroke; ///< a polyline in rest space, on the surface or inside; one point is a point
 };
 
 struct DepthOptions {

@@ -14,6 +14,7 @@
 // The same model gives the same bytes: times in the zip are fixed.
 #include "volume/cut/piece.h"
 #include "volume/layer/model.h"
+#include "volume/mesh/region_measure.h"
 
 #include <filesystem>
 #include <map>
@@ -70,6 +71,7 @@ struct ModelSummary {
     bool moved = false;
   };
   std::vector<PieceSummary> piece;
+  std::vector<RegionMeasure> region; ///< ascending; empty in files of pith 0.1.0 and before
 };
 ModelSummary read_model_summary(const std::filesystem::path& path);
 

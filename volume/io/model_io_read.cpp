@@ -13,6 +13,7 @@ using nlohmann::json;
 namespace {
 
 constexpr std::int64_t most = 0xfffffffe; // of anything that a 32-bit index names
+constexpr std::int64_t most_region = 0x7fffffff;
 constexpr std::size_t any = ZipReader::any;
 
 ZipReader opened(const std::filesystem::path& path) {
@@ -275,6 +276,22 @@ ModelSummary read_model_summary(const std::filesystem::path& path) {
     about.bounds = box_of(member(entry, "bounds", where), where);
     about.moved = flag(entry, "moved", where);
   }
+  if (description.contains("regions"))
+    for (const json& entry : list(description, "regions", 0, where)) {
+      RegionMeasure& about = summary.region.emplace_back();
+      about.region = static_cast<std::int32_t>(integer(entry, "region", -most_region, most_region, where));
+      about.tets = count(entry, "tets");
+      about.volume = number(entry, "volume", where);
+      about.bounds = box_of(member(entry, "bounds", where), where);
+      about.minimum_dihedral = number(entry, "minimum_dihedral", where);
+      about.outside_area = number(entry, "outside_area", where);
+      about.interface_area = number(entry, "interface_area", where);
+      for (const json& other : list(entry, "beside", 0, where)) {
+        if (!other.is_number_integer())
+          throw InvalidInput(where, "a region beside another is no number", "make it again");
+        about.beside.push_back(other.get<std::int32_t>());
+      }
+    }
   return summary;
 }
 

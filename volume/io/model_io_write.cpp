@@ -191,9 +191,16 @@ void write_model(const std::filesystem::path& path, const Model& model, const Pi
   }
   for (const Mask* mask : masks.all()) mask_list.push_back(json_of(*mask));
 
-  std::vector<std::int32_t> regions(model.mesh.region.begin(), model.mesh.region.end());
-  std::sort(regions.begin(), regions.end());
-  const auto region_count = std::unique(regions.begin(), regions.end()) - regions.begin();
+  json regions = json::array();
+  for (const RegionMeasure& region : measure_regions(model.mesh))
+    regions.push_back({{"region", region.region},
+                       {"tets", region.tets},
+                       {"volume", region.volume},
+                       {"bounds", json_of(region.bounds)},
+                       {"minimum_dihedral", region.minimum_dihedral},
+                       {"outside_area", region.outside_area},
+                       {"interface_area", region.interface_area},
+                       {"beside", region.beside}});
 
   const json description = {{"format", "pith model"},
                             {"version", model_format_version},
@@ -203,10 +210,11 @@ void write_model(const std::filesystem::path& path, const Model& model, const Pi
                              {{"vertices", model.mesh.vertex_count()},
                               {"tets", model.mesh.tet_count()},
                               {"facets", model.boundary.facet_count()},
-                              {"regions", region_count},
+                              {"regions", regions.size()},
                               {"added_vertices", pieces.added.size()},
                               {"cuts", pieces.cut_count}}},
                             {"bounds", json_of(bounds_of(model.mesh))},
+                            {"regions", regions},
                             {"fields",
                              {{"input", !model.boundary.input.empty()},
                               {"depth", !model.field.depth.empty()},

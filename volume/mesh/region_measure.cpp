@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 
 namespace pith {
 
@@ -31,6 +32,7 @@ std::vector<RegionMeasure> measure_regions(const TetMesh& mesh) {
         smallest_dihedral({mesh.position[c[0]], mesh.position[c[1]], mesh.position[c[2]], mesh.position[c[3]]});
   });
   std::map<std::int32_t, RegionMeasure> of_region;
+  std::map<std::int32_t, std::set<std::int32_t>> beside;
   for (const TetId t : all_ids<TetId>(mesh.tet_count())) {
     RegionMeasure& measure = of_region[mesh.region[t]];
     const auto& corner = mesh.corner[t];
@@ -45,12 +47,14 @@ std::vector<RegionMeasure> measure_regions(const TetMesh& mesh) {
       const Vec3d& origin = mesh.position[corner[c[0]]];
       const double area =
           0.5 * (mesh.position[corner[c[1]]] - origin).cross(mesh.position[corner[c[2]]] - origin).norm();
+      if (behind.exists()) beside[mesh.region[t]].insert(mesh.region[behind]);
       (behind.exists() ? measure.interface_area : measure.outside_area) += area;
     }
   }
   std::vector<RegionMeasure> result;
   for (auto& [region, measure] : of_region) {
     measure.region = region;
+    measure.beside.assign(beside[region].begin(), beside[region].end());
     result.push_back(measure);
   }
   return result;

@@ -12,9 +12,10 @@ struct RegionMeasure {
   std::size_t tets = 0;
   double volume = 0; ///< mm³
   Box bounds;
-  double minimum_dihedral = 0; ///< radians, over its tets
-  double outside_area = 0;     ///< mm², of its boundary with nothing behind
-  double interface_area = 0;   ///< mm², of its boundary with other regions
+  double minimum_dihedral = 0;      ///< radians, over its tets
+  double outside_area = 0;          ///< mm², of its boundary with nothing behind
+  double interface_area = 0;        ///< mm², of its boundary with other regions
+  std::vector<std::int32_t> beside; ///< the regions that it touches with facets, ascending
 };
 
 /// One entry for each region that has tets, by ascending number. Precondition: the mesh is connected. O(n), sums in a
