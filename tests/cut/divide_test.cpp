@@ -174,10 +174,10 @@ TEST(Divide, ASurfaceMeshParts) {
     const double expected = out.maxCoeff() <= 0 ? out.maxCoeff() : out.cwiseMax(0).norm();
     EXPECT_NEAR(inside->value(x), expected, 1e-12);
   }
-  const TetMesh grid = tet_grid(8, 8, 8);
+  const TetMesh grid = tet_grid(16, 16, 16, 0.5);
   const DivideResult result = divide(grid, own_triangles(grid), *inside);
   check_divided(grid, result);
-  EXPECT_NEAR(regions_of(result.mesh).at(0).volume, 3.6 * 3.6 * 3.6, 0.1 * 3.6 * 3.6 * 3.6); // its edges are blunted
+  EXPECT_NEAR(regions_of(result.mesh).at(0).volume, 3.6 * 3.6 * 3.6, 0.06 * 3.6 * 3.6 * 3.6); // its edges are blunted
 
   // An open sheet: two triangles in the plane z = 3.4 that end inside the grid; it goes on beyond its rim.
   TriMesh sheet;
