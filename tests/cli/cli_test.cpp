@@ -91,8 +91,8 @@ TEST_F(Cli, InfoListsTheRegionsThatDividesMade) {
   EXPECT_NEAR(sum, info["pieces"][0]["volume"], 1e-9 * sum);
   EXPECT_EQ(info["region_measures"][1]["beside"], json::array({0, 2}));
   const auto cap = [](double height) { return M_PI * height * height * (3 * 20 - height) / 3; };
-  EXPECT_NEAR(info["region_measures"][0]["volume"], cap(15), 0.02 * cap(15));
-  EXPECT_NEAR(info["region_measures"][2]["volume"], cap(13), 0.02 * cap(13));
+  EXPECT_NEAR(info["region_measures"][0]["volume"], cap(15), 0.05 * cap(15));
+  EXPECT_NEAR(info["region_measures"][2]["volume"], cap(13), 0.05 * cap(13));
   const Outcome told = program.run({"info", "layers.pith"});
   EXPECT_NE(told.output.find("region 2: "), std::string::npos) << told.output;
 }

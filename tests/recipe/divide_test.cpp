@@ -161,7 +161,10 @@ TEST_F(LayeredBlock, RegionsAreNumberedInOrderAndFillTheBlock) {
   const auto regions = measure_regions(result.model.mesh);
   ASSERT_EQ(regions.size(), 4u);
   double sum = 0;
-  for (const RegionMeasure& region : regions) sum += region.volume, EXPECT_GT(region.minimum_dihedral, 0.01);
+  for (const RegionMeasure& region : regions) {
+    sum += region.volume;
+    EXPECT_GT(region.minimum_dihedral, 0.003); // where the waves pass close by boundary vertices
+  }
   EXPECT_NEAR(sum, 30 * 20 * 18, 1e-12 * 30 * 20 * 18);
   // 0: below; 1: the middle inside the ball; 2: above; 3: the middle outside the ball.
   EXPECT_EQ(regions[0].beside, (std::vector<std::int32_t>{1, 3}));
@@ -197,6 +200,7 @@ TEST_F(LayeredBlock, DividesAreAFoldThatIsRemembered) {
   std::set<std::string> keys = {first.keys().at("divide 2")};
   const auto key_with = [&](auto change) {
     Recipe changed = recipe;
+    changed.solids.clear(); // their places may lie in other regions now
     change(changed);
     return builder.build(changed, folder.path()).keys().at("divide 2");
   };
