@@ -276,9 +276,15 @@ private:
 
 LapResult lap(const LapInput& input, const Exemplar& exemplar, const LapOptions& options, const Progress& progress) {
   check(input, exemplar, options);
-  LapResult result = options.type == TextureType::tensor_2d
-                         ? LapResult{.layer = affine_layer(input), .statistics = {}}
-                         : Filler(input, exemplar, options).run(progress);
+  LapResult result;
+  if (options.type == TextureType::tensor_2d) { // nothing tiles: one paste shows the whole exemplar
+    result.layer = affine_layer(input);
+    result.statistics.pastes = 1;
+    result.statistics.lookups = result.layer.lookup.size();
+    result.statistics.median_share_used = 1;
+  } else {
+    result = Filler(input, exemplar, options).run(progress);
+  }
   result.layer.name = exemplar.name;
   result.layer.exemplar.push_back(exemplar);
   return result;

@@ -27,7 +27,7 @@ struct TetrahedralizeOptions {
   /// Seconds before TetGen's process is given up.
   double time_limit = 600;
   /// The helper program that runs TetGen; empty: `pith-tetgen` beside the running program.
-  std::filesystem::path helper;
+  std::filesystem::path helper{};
 };
 
 struct TetrahedralizeResult {
