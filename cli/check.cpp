@@ -1,10 +1,10 @@
 // pith check FILE: is this surface or model usable? Figures, and how to mend what is wrong.
 #include "cli/command.h"
 #include "cli/pieces_report.h"
-#include "cli/survey.h"
 #include "volume/base/error.h"
 #include "volume/io/mesh_io.h"
 #include "volume/io/model_io.h"
+#include "volume/measure/coverage.h"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -111,7 +111,8 @@ void check_model(const CheckOptions& options, const Session& session) {
     root_volume += signed_volume(file.model.mesh, tet);
 
   const Root root(std::move(file.model));
-  const Survey survey = survey_of(root, options.points, session.seed.value_or(1), session.progress("check"));
+  const CoverageMeasure survey = coverage_measure(
+      root, {.points = options.points, .seed = session.seed.value_or(1), .region = -1}, session.progress("check"));
   if (survey.holes > 0)
     findings.push_back(
         {fmt::format("of {} points that something shines through (the worst at ({:.6g}, {:.6g}, {:.6g}), "
@@ -121,8 +122,8 @@ void check_model(const CheckOptions& options, const Session& session) {
   session.say(fmt::format("  {} random points: {} holes, {} thin (by more than 1/255), least coverage {:.4f}; "
                           "look-ups read per point: median {}, "
                           "p99 {}, most {}",
-                          survey.points, survey.holes, survey.thin, survey.least_coverage, survey.median_lookups,
-                          survey.p99_lookups, survey.most_lookups));
+                          survey.points, survey.holes, survey.thin, survey.least_coverage, survey.median_reads,
+                          survey.p99_reads, survey.most_reads));
   session.say(fmt::format("  volume of the pieces {:.9g} mm³, of the root {:.9g} mm³", volume, root_volume));
   say(findings, session);
   session.print({{"file", options.file.string()},
@@ -136,9 +137,9 @@ void check_model(const CheckOptions& options, const Session& session) {
                  {"holes", survey.holes},
                  {"thin", survey.thin},
                  {"least_coverage", survey.least_coverage},
-                 {"median_lookups_read", survey.median_lookups},
-                 {"p99_lookups_read", survey.p99_lookups},
-                 {"most_lookups_read", survey.most_lookups}});
+                 {"median_lookups_read", survey.median_reads},
+                 {"p99_lookups_read", survey.p99_reads},
+                 {"most_lookups_read", survey.most_reads}});
   if (!findings.empty())
     throw InvalidInput(options.file.string(), std::to_string(findings.front().count) + " " + findings.front().what,
                        findings.front().mend);

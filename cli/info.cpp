@@ -1,6 +1,7 @@
 // pith info FILE
 #include "cli/command.h"
 #include "cli/pieces_report.h"
+#include "cli/quality.h"
 #include "recipe/recipe.h"
 #include "volume/base/error.h"
 #include "volume/io/exemplar_io.h"
@@ -34,8 +35,9 @@ std::string joined(const std::vector<std::string>& words) {
   return result;
 }
 
-void add_quality(const std::filesystem::path& file, Json& pieces, const Session& session) {
-  const ModelFile model = read_model(file);
+/// Adds to `pieces` how sound each is; returns the measures of the fill.
+Json add_quality(const std::filesystem::path& file, Json& pieces, const Session& session) {
+  ModelFile model = read_model(file);
   for (std::uint32_t piece = 0; piece < model.pieces.piece.size(); ++piece) {
     session.stop_if_asked();
     const PieceReport report = report_of(model.pieces, piece, model.model);
@@ -49,6 +51,7 @@ void add_quality(const std::filesystem::path& file, Json& pieces, const Session&
                             report.manifold() ? "manifold" : "not manifold",
                             report.minimum_dihedral * 57.29577951308232));
   }
+  return quality_of(std::move(model), session);
 }
 
 /// Tells the regions and returns them as JSON.
@@ -103,11 +106,12 @@ void model_info(const InfoOptions& options, const Session& session) {
                       {"bounds", json_from(piece.bounds)},
                       {"moved", piece.moved}});
   }
-  if (options.quality) add_quality(options.file, pieces, session);
+  Json quality = Json::array();
+  if (options.quality) quality = add_quality(options.file, pieces, session);
   session.say(fmt::format("  {} cut(s); {:.2f} MB", summary.cuts, summary.file_bytes / 1e6));
   Json keys = Json::object();
   for (const auto& [stage, key] : summary.key) keys[stage] = key;
-  session.print({{"file", options.file.string()},
+  Json object = {{"file", options.file.string()},
                  {"kind", "model"},
                  {"bytes", summary.file_bytes},
                  {"version", summary.version},
@@ -123,7 +127,9 @@ void model_info(const InfoOptions& options, const Session& session) {
                  {"region_measures", std::move(regions)},
                  {"layers", std::move(layers)},
                  {"pieces", std::move(pieces)},
-                 {"stages", std::move(keys)}});
+                 {"stages", std::move(keys)}};
+  if (options.quality) object["quality"] = std::move(quality);
+  session.print(object);
 }
 
 void mesh_info(const InfoOptions& options, const Session& session) {
@@ -235,8 +241,9 @@ Verb info_verb(CLI::App& program) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App* app = program.add_subcommand("info", "what is in a model, mesh, exemplar, recipe, array or image");
   app->add_option("file", options->file, "the file")->required();
-  app->add_flag("--quality", options->quality,
-                "also what takes a while: are pieces or surfaces watertight, manifold ...");
+  app->add_flag(
+      "--quality", options->quality,
+      "also what takes a while: are pieces or surfaces watertight, manifold ...; how good a model's fill is");
   return {app, [options](const Session& session) { run(*options, session); }};
 }
 

@@ -56,11 +56,7 @@ LayerReader::LayerReader(const Layer& l, bool mips) : layer(&l), components(l.ex
 
 namespace {
 
-/// A look-up at the point: its coordinates in the patch's unit cube and its masked weight.
-struct Sight {
-  Lanes w; ///< lanes beyond the layer's width mean nothing
-  float alpha;
-};
+using Sight = LookupSight;
 
 /// A sight whose alpha is the interpolated corner weight, not yet masked.
 template <int Width>
@@ -86,7 +82,9 @@ inline Sight sight_at(const LayerReader& reader, const Lookup& lookup, const std
   return s;
 }
 
-Sight sight_of(const LayerReader& reader, const Lookup& lookup, const std::array<float, 4>& b) {
+} // namespace
+
+LookupSight sight_of(const LayerReader& reader, const Lookup& lookup, const std::array<float, 4>& b) {
   switch (reader.layer->width) {
   case 2:
     return sight_at<2>(reader, lookup, b);
@@ -97,12 +95,9 @@ Sight sight_of(const LayerReader& reader, const Lookup& lookup, const std::array
   }
 }
 
-/// Rows: gradients (1/mm) of the exemplar coordinates over rest space.
-using Jacobian = Eigen::Matrix<double, 4, 3>;
-
-Jacobian jacobian_of(const Layer& layer, const Lookup& lookup, const SimplexPoint& point) {
+LookupJacobian jacobian_of(const Layer& layer, const Lookup& lookup, const SimplexPoint& point) {
   const int stride = layer.width + 1, corners = layer.domain == Domain::solid ? 4 : 3;
-  Jacobian j = Jacobian::Zero();
+  LookupJacobian j = LookupJacobian::Zero();
   for (int i = 0; i < corners; ++i) {
     const float* row = layer.corner.data() + std::size_t(lookup.corner[i]) * stride;
     for (int k = 0; k < layer.width; ++k) j.row(k) += row[k] * point.gradient[i].transpose();
@@ -112,8 +107,10 @@ Jacobian jacobian_of(const Layer& layer, const Lookup& lookup, const SimplexPoin
   return j;
 }
 
+namespace {
+
 /// Carries directions and normals from texture space to rest space; leaves other channels alone.
-void carry_directions(const LayerReader& reader, const Jacobian& j, const SimplexPoint& point, float* value) {
+void carry_directions(const LayerReader& reader, const LookupJacobian& j, const SimplexPoint& point, float* value) {
   Mat3d map = j.topRows<3>();
   if (reader.layer->domain == Domain::skin)
     map.row(2) = 0.5 * (j.row(0).norm() + j.row(1).norm()) * point.normal.transpose();
@@ -145,7 +142,7 @@ void read_exemplar(const LayerReader& reader, const Lookup& lookup, const Sight&
   const bool carry = reader.has_directions && !gaussian;
   if (point.footprint <= 0 && !carry) return sample(levels[0], cell_at(levels[0], u), value);
 
-  const Jacobian j = jacobian_of(layer, lookup, point);
+  const LookupJacobian j = jacobian_of(layer, lookup, point);
   double level = 0;
   if (point.footprint > 0) {
     double texels = 1;

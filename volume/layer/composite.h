@@ -2,10 +2,18 @@
 // The one compositor: the look-ups of one layer on one simplex become one value, by the layer's blend rule.
 #include "volume/layer/layer.h"
 #include "volume/layer/sample.h"
+#include "volume/mesh/tet_mesh.h"
 
 #include <span>
 
 namespace pith {
+
+/// The look-ups of one simplex (a tet or a boundary facet, by the layer's domain), in paste order; none where the
+/// layer has nothing there.
+std::span<const Lookup> lookups_of(const Layer& layer, std::uint32_t simplex);
+
+/// Gradients (1/mm) of a tet's barycentric coordinates.
+std::array<Vec3d, 4> barycentric_gradients(const TetMesh& mesh, TetId tet);
 
 /// A layer with what is needed to read it fast: grids for every mip level, decoding tables, and the corner rows of
 /// every look-up side by side (with 3 coordinates in a tet one line of the cache instead of four). Refers to the
@@ -46,6 +54,18 @@ struct SimplexPoint {
   Vec3d normal;         ///< unit, of a facet; not set on a tet
   double footprint = 0; ///< mm
 };
+
+/// One look-up at a point: its coordinates in the patch's unit cube and its masked weight.
+struct LookupSight {
+  Lanes w; ///< lanes beyond the layer's width mean nothing
+  float alpha;
+};
+/// `lookup` is one of the reader's layer.
+LookupSight sight_of(const LayerReader& reader, const Lookup& lookup, const std::array<float, 4>& barycentric);
+
+/// Rows: gradients (1/mm) of a look-up's exemplar coordinates over rest space. Needs the point's gradients.
+using LookupJacobian = Eigen::Matrix<double, 4, 3>;
+LookupJacobian jacobian_of(const Layer& layer, const Lookup& lookup, const SimplexPoint& point);
 
 struct LayerValue {
   std::array<float, max_components> value{}; ///< multiplied by coverage

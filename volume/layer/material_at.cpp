@@ -6,9 +6,7 @@
 
 namespace pith {
 
-namespace {
-
-std::span<const Lookup> row_of(const Layer& layer, std::uint32_t simplex) {
+std::span<const Lookup> lookups_of(const Layer& layer, std::uint32_t simplex) {
   std::size_t row = simplex;
   if (!layer.simplex.empty()) {
     const auto at = std::lower_bound(layer.simplex.begin(), layer.simplex.end(), simplex);
@@ -18,7 +16,7 @@ std::span<const Lookup> row_of(const Layer& layer, std::uint32_t simplex) {
   return {layer.lookup.data() + layer.begin[row], layer.lookup.data() + layer.begin[row + 1]};
 }
 
-/// Gradients of a tet's barycentric coordinates: inward facet normals over three times the volume.
+// Inward facet normals over three times the volume.
 std::array<Vec3d, 4> barycentric_gradients(const TetMesh& mesh, TetId tet) {
   std::array<Vec3d, 4> gradient;
   const auto& c = mesh.corner[tet];
@@ -30,6 +28,8 @@ std::array<Vec3d, 4> barycentric_gradients(const TetMesh& mesh, TetId tet) {
   }
   return gradient;
 }
+
+namespace {
 
 /// The point of a facet nearest to x, with tangent gradients where they are needed.
 SimplexPoint point_on_facet(const Model& model, FacetId facet, const Vec3d& x) {
@@ -90,7 +90,7 @@ void materials_at(const Root& root, std::span<const MaterialPoint> points, std::
     }
     if (const TetId tet = hint_of(far - near); tet.exists()) {
       for (const VertexId v : mesh.corner[tet]) __builtin_prefetch(&mesh.position[v]);
-      each_solid_layer([&](const LayerReader& reader) { prefetch_row(reader, row_of(*reader.layer, tet)); });
+      each_solid_layer([&](const LayerReader& reader) { prefetch_row(reader, lookups_of(*reader.layer, tet)); });
     }
     if (step >= far) result[step - far] = material_at(root, points[step - far], footprint);
   }
@@ -119,12 +119,12 @@ Material material_at(const Root& root, const MaterialPoint& point, const Locatio
     SimplexPoint at;
     std::span<const Lookup> lookups;
     if (layer.domain == Domain::solid) {
-      lookups = row_of(layer, location.tet);
+      lookups = lookups_of(layer, location.tet);
       for (int k = 0; k < 4; ++k) at.barycentric[k] = static_cast<float>(location.barycentric[k]);
       if (needs_gradient(reader, footprint)) at.gradient = barycentric_gradients(model.mesh, location.tet);
     } else {
       if (!point.facet.exists()) continue;
-      lookups = row_of(layer, point.facet);
+      lookups = lookups_of(layer, point.facet);
       if (!lookups.empty()) at = point_on_facet(model, point.facet, point.position);
     }
     if (lookups.empty()) continue;
