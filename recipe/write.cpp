@@ -102,6 +102,7 @@ json json_from(const ScaleConstraint& local) {
 }
 
 json json_from(const Solid& solid);
+json json_from(const DivideStep& divide);
 json json_from(const CutStep& cut);
 json json_from(const MoveStep& move);
 template <class T>

@@ -130,7 +130,7 @@ std::vector<Slice> model_slices(const Root& root, const std::vector<SliceGrid>& 
 }
 
 ExemplarSlicer::ExemplarSlicer(const Exemplar& exemplar)
-    : exemplar_(exemplar), grid_(texel_grid(exemplar, exemplar.texel)), decode_(decode_table(exemplar)) {
+    : exemplar_(exemplar), grid_(texel_grid(exemplar, exemplar.texel, decode_table(exemplar))) {
   if (exemplar.axes != 3)
     throw InvalidInput("exemplar '" + exemplar.name + "'", "is no volume", "slices need one of 3 axes");
   for (const Channel& c : exemplar.channel) {
@@ -143,7 +143,7 @@ ExemplarSlicer::ExemplarSlicer(const Exemplar& exemplar)
 Vec3f ExemplarSlicer::color(const Vec3d& u) const {
   const Lanes at{float(u.x()), float(u.y()), float(u.z()), 0};
   std::array<float, max_components> value;
-  sample(grid_, decode_, cell_at(grid_, at), value.data());
+  sample(grid_, cell_at(grid_, at), value.data());
   return {value[color_], value[color_ + 1], value[color_ + 2]};
 }
 

@@ -76,7 +76,6 @@ public:
 private:
   const Exemplar& exemplar_;
   TexelGrid grid_;
-  DecodeTable decode_;
   int color_ = 0;
 };
 
