@@ -160,7 +160,7 @@ TEST(SliceMetric, OfTheExemplarItselfIsAboutOneAndGrowsWithBlur) {
     EXPECT_GT(good.pixels_left, 0.4);
     EXPECT_NEAR(good.relative.coherence, 1, 0.2) << depth;
     EXPECT_NEAR(good.relative.completeness, 1, 0.2) << depth;
-    EXPECT_NEAR(good.relative.wasserstein, 1, 0.5) << depth;
+    EXPECT_LT(good.relative.wasserstein, 1.5) << depth;
     // The same model filled with a blurred copy, told that its exemplar is the sharp one.
     Exemplar soft = sharp;
     for (int z = 0; z < 32; ++z)
