@@ -46,8 +46,8 @@ SimplexPoint point_on_facet(const Model& model, FacetId facet, const Vec3d& x) {
 }
 
 /// Asks the memory for where a simplex' row is; then for the uppermost look-ups of the row.
-void prefetch_begin(const Layer& layer, std::uint32_t simplex) {
-  if (layer.simplex.empty()) __builtin_prefetch(layer.begin.data() + simplex);
+void prefetch_begin(const Root::Tables::LayerEntry& entry, std::uint32_t simplex) {
+  __builtin_prefetch(entry.begin() + simplex);
 }
 void prefetch_row(const LayerReader& reader, std::span<const Lookup> row) {
   for (std::size_t i = row.size(); i > 0 && i + 3 > row.size(); --i) {
@@ -74,7 +74,7 @@ void materials_at(const Root& root, std::span<const MaterialPoint> points, std::
   const TetMesh& mesh = tables.model.mesh;
   const auto each_solid_layer = [&](const auto& visit) {
     for (const auto& entry : tables.layers)
-      if (entry.reader.layer->domain == Domain::solid) visit(entry.reader);
+      if (entry.reader.layer->domain == Domain::solid) visit(entry);
   };
   // Two steps ahead of the evaluation: where a tet's corners and look-ups are, then what they are.
   constexpr std::size_t far = 12, near = 6;
@@ -86,11 +86,11 @@ void materials_at(const Root& root, std::span<const MaterialPoint> points, std::
     if (const TetId tet = hint_of(0); tet.exists()) {
       __builtin_prefetch(&mesh.corner[tet]);
       __builtin_prefetch(&mesh.region[tet]);
-      each_solid_layer([&](const LayerReader& reader) { prefetch_begin(*reader.layer, tet); });
+      each_solid_layer([&](const Root::Tables::LayerEntry& entry) { prefetch_begin(entry, tet); });
     }
     if (const TetId tet = hint_of(far - near); tet.exists()) {
       for (const VertexId v : mesh.corner[tet]) __builtin_prefetch(&mesh.position[v]);
-      each_solid_layer([&](const LayerReader& reader) { prefetch_row(reader, lookups_of(*reader.layer, tet)); });
+      each_solid_layer([&](const Root::Tables::LayerEntry& entry) { prefetch_row(entry.reader, entry.row(tet)); });
     }
     if (step >= far) result[step - far] = material_at(root, points[step - far], footprint);
   }
@@ -113,18 +113,21 @@ Material material_at(const Root& root, const MaterialPoint& point, const Locatio
   std::array<float, max_components> covered{}; // per component: a layer need not have every channel
   float shown_through = 1;
   for (std::size_t i = tables.layers.size(); i-- > 0;) {
-    const auto& [reader, component] = tables.layers[i];
+    const Root::Tables::LayerEntry& entry = tables.layers[i];
+    const LayerReader& reader = entry.reader;
+    const std::vector<int>& component = entry.component;
     const Layer& layer = *reader.layer;
     if (layer.region >= 0 && layer.region != region) continue;
     SimplexPoint at;
     std::span<const Lookup> lookups;
     if (layer.domain == Domain::solid) {
-      lookups = lookups_of(layer, location.tet);
+      lookups = entry.row(location.tet);
+      if (lookups.empty()) continue;
       for (int k = 0; k < 4; ++k) at.barycentric[k] = static_cast<float>(location.barycentric[k]);
       if (needs_gradient(reader, footprint)) at.gradient = barycentric_gradients(model.mesh, location.tet);
     } else {
       if (!point.facet.exists()) continue;
-      lookups = lookups_of(layer, point.facet);
+      lookups = entry.row(point.facet);
       if (!lookups.empty()) at = point_on_facet(model, point.facet, point.position);
     }
     if (lookups.empty()) continue;

@@ -66,7 +66,15 @@ Root::Tables::Tables(Model given, const RootOptions& options)
     throw InvalidInput("model '" + model.name + "'", "has " + std::to_string(components) + " components",
                        "use at most " + std::to_string(max_components) + " over all channels");
   for (const Layer& l : model.layer) {
-    LayerEntry entry{LayerReader(l, options.mips), {}};
+    LayerEntry entry{LayerReader(l, options.mips), {}, {}};
+    if (!l.simplex.empty()) {
+      const std::size_t simplices = l.domain == Domain::solid ? model.mesh.tet_count() : model.boundary.facet_count();
+      entry.dense_begin.resize(simplices + 1);
+      for (std::size_t row = 0, simplex = 0; simplex <= simplices; ++simplex) {
+        entry.dense_begin[simplex] = l.begin[row];
+        if (row < l.simplex.size() && l.simplex[row] == simplex) ++row;
+      }
+    }
     for (const Channel& c : l.exemplar.front().channel) {
       const std::size_t at =
           std::find_if(channels.begin(), channels.end(), [&](auto& k) { return k.name == c.name; }) -
