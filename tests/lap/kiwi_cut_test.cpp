@@ -1,9 +1,11 @@
-// A filled kiwi through three cuts: at every vertex and at random points of every section and skin facet of every
-// piece the colour is the root's, bit for bit, whatever the hint and the number of threads.
+// A filled kiwi with scattered seeds, a sparse layer, through three cuts: at every vertex and at random points of
+// every section and skin facet of every piece the colour is the root's, bit for bit, whatever the hint and the number
+// of threads.
 #include "tests/lap/kiwi_fixture.h"
 
 #include "volume/base/random.h"
 #include "volume/cut/cut.h"
+#include "volume/lap/scatter.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +17,17 @@ namespace {
 TEST(KiwiCut, ColoursAreTheRootsBitForBit) {
   const testing::KiwiSolid solid = testing::kiwi_solid();
   LapResult fill = lap(solid.input(), solid.exemplar, {.frame_tolerance = 2.0});
-  const Root root = root_of(solid, std::move(fill.layer));
+  const Thing thing = thing_of(procedural_exemplar("kiwi-seed", {.resolution = 32}));
+  const Locator locator(solid.mesh, solid.boundary);
+  const ScatterResult seeds =
+      scatter({{solid.mesh, locator, 0, solid.frames.axes, solid.frames.scale}, solid.depth.value}, thing,
+              {.count = 400, .size = 2.3, .depth = {0.6, 0.9}}, {}, "seeds");
+  const PastedKind kind{&thing, seeds.pasted};
+  Model model;
+  model.mesh = solid.mesh;
+  model.boundary = solid.boundary;
+  model.layer = {std::move(fill.layer), layer_of({&kind, 1}, 0, "seeds")};
+  const Root root(std::move(model), {.mips = false});
   const TetMesh& mesh = root.model().mesh;
   const Boundary& boundary = root.model().boundary;
 
