@@ -40,21 +40,17 @@ struct Palette {
     float radius;
     Rgb color;
   };
-  std::array<Stop, 11> flesh{{{0.00f, measured(224, 216, 178)},
-                              {0.12f, measured(218, 212, 167)},
-                              {0.18f, measured(211, 205, 152)},
-                              {0.25f, measured(186, 186, 112)},
-                              {0.30f, measured(146, 150, 66)},
-                              {0.42f, measured(126, 136, 52)},
-                              {0.58f, measured(123, 141, 35)},
-                              {0.72f, measured(118, 137, 26)},
-                              {0.86f, measured(110, 126, 18)},
-                              {0.95f, measured(100, 112, 12)},
-                              {1.00f, measured(92, 98, 14)}}};
+  std::vector<Stop> flesh{
+      {0.00f, measured(224, 216, 178)}, {0.12f, measured(218, 212, 167)}, {0.18f, measured(211, 205, 152)},
+      {0.25f, measured(186, 186, 112)}, {0.30f, measured(146, 150, 66)},  {0.42f, measured(126, 136, 52)},
+      {0.58f, measured(123, 141, 35)},  {0.72f, measured(118, 137, 26)},  {0.86f, measured(110, 126, 18)},
+      {0.95f, measured(100, 112, 12)},  {1.00f, measured(92, 98, 14)}};
   Rgb locule = measured(72, 80, 26), locule_inner = measured(104, 98, 40);
   Rgb ray = measured(158, 170, 92);
   Rgb speck = measured(186, 196, 104);
   Rgb seed = measured(30, 12, 9), seed_sheen = measured(52, 25, 18), seed_behind = measured(54, 48, 38);
+  float locule_blend = 0.86f, streak_blend = 0.75f, ray_begin = 0.20f, ray_full = 0.31f, ray_gain = 1.0f,
+        speck_blend = 0.68f, speck_length = 1.0f;
   Rgb rim = measured(84, 58, 14), skin_dark = measured(92, 50, 8), skin = measured(135, 93, 48),
       skin_light = measured(212, 166, 114);
 
@@ -69,6 +65,30 @@ struct Palette {
                              : mixed(skin, skin_light, 2.0f * brightness - 1.0f);
   }
 };
+
+/// For flesh whose seeds are things of their own; adjusted by eye against the same photographs. Locules are little
+/// darker than the flesh around them (much of their darkness above is seeds that shine through), and the core has an
+/// outline.
+Palette flesh_palette() {
+  Palette p;
+  p.flesh = {{0.00f, measured(226, 219, 182)},  {0.12f, measured(222, 216, 174)}, {0.19f, measured(216, 212, 164)},
+             {0.225f, measured(207, 206, 148)}, {0.25f, measured(176, 182, 102)}, {0.28f, measured(140, 152, 62)},
+             {0.34f, measured(128, 144, 50)},   {0.42f, measured(126, 142, 46)},  {0.58f, measured(127, 147, 38)},
+             {0.72f, measured(122, 143, 30)},   {0.86f, measured(112, 130, 20)},  {0.95f, measured(100, 114, 13)},
+             {1.00f, measured(92, 98, 14)}};
+  p.locule = measured(80, 98, 24);
+  p.locule_inner = measured(104, 112, 36);
+  p.ray = measured(170, 182, 104);
+  p.locule_blend = 0.62f;
+  p.streak_blend = 0.40f;
+  p.ray_begin = 0.22f;
+  p.ray_full = 0.27f;
+  p.ray_gain = 1.1f;
+  p.speck = measured(196, 206, 122);
+  p.speck_blend = 0.62f;
+  p.speck_length = 0.62f;
+  return p;
+}
 
 /// The fields of one exemplar; constant once made.
 struct Fields {
@@ -110,7 +130,7 @@ struct Line {
 struct Depth {
   Depth(const Palette& palette, float depth) : depth(depth), radius(kiwi_radius_at_depth(depth)) {
     flesh = palette.flesh_at(radius);
-    ray_strength = ramp(0.20f, 0.31f, radius);
+    ray_strength = ramp(palette.ray_begin, palette.ray_full, radius);
     ray_contrast = 0.75f + 0.35f * ramp(0.32f, 0.50f, radius);
     streak_strength = ramp(0.20f, 0.27f, radius) * (1.0f - ramp(0.30f, 0.42f, radius));
     wisp_strength = ramp(0.42f, 0.58f, radius) * (1.0f - ramp(0.66f, 0.93f, radius));
@@ -141,7 +161,7 @@ Rgb flesh_color(const Palette& palette, const Line& line, const Depth& at, float
   const float fade = 1.0f - ramp(0.50f + 0.08f * own, 0.86f + 0.10f * own, at.radius);
   const float ray_width = 0.15f + 0.05f * own + 0.10f * ramp(0.5f, 0.8f, at.radius);
   const float ray = (1.0f - ramp(0.25f * ray_width, ray_width, from_ray)) * at.ray_strength * fade;
-  const float ray_blend = ray * (0.46f + 0.26f * own + 0.26f * fiber) * at.ray_contrast;
+  const float ray_blend = ray * (0.46f + 0.26f * own + 0.26f * fiber) * at.ray_contrast * palette.ray_gain;
 
   // Dark lens-shaped locules between them.
   const float vary = line.locule.corner(index);
@@ -150,7 +170,7 @@ Rgb flesh_color(const Palette& palette, const Line& line, const Depth& at, float
   const float lens = (0.37f + 0.04f * vary) * std::sqrt(4.0f * s * (1.0f - s) * (1.25f - 0.5f * s));
   const float locule =
       ramp(-0.07f, 0.10f, lens - std::fabs(across)) * ramp(0.0f, 0.30f, s) * (1.0f - ramp(0.55f, 1.0f, s));
-  color = mixed(color, at.locule_color, std::min(1.0f, locule * (0.86f + 0.14f * cloud)));
+  color = mixed(color, at.locule_color, std::min(1.0f, locule * (palette.locule_blend + 0.14f * cloud)));
   color = mixed(color, palette.ray, std::clamp(ray_blend, 0.0f, 1.0f));
 
   // Wisps: thinner pale lines between the rays, further out.
@@ -159,7 +179,7 @@ Rgb flesh_color(const Palette& palette, const Line& line, const Depth& at, float
 
   // Fine dark strokes between the seeds and the core.
   const float streak = std::max(0.0f, line.streak.at(x) + 0.1f) * at.streak_strength;
-  color = mixed(color, palette.locule_inner, 0.75f * streak);
+  color = mixed(color, palette.locule_inner, palette.streak_blend * streak);
 
   // Translucent unevenness: slow clouds, radial fibres, cells; along T in the core.
   const float grain = at.grain_strength * (0.09f * cloud + 0.16f * fiber + 0.12f * cell);
@@ -176,24 +196,25 @@ std::vector<std::uint8_t> encoding_table() {
   return table;
 }
 
-} // namespace
-
-Exemplar kiwi_exemplar(const ProceduralOptions& options) {
+Exemplar kiwi_of(const ProceduralOptions& options, bool with_seeds) {
   const int n = options.resolution;
   const int parts = std::max(1, (127 + n) / n); // sub-texels along each axis where texels are coarse
   const int fine = n * parts;
 
   Exemplar exemplar;
-  exemplar.name = "kiwi";
+  exemplar.name = with_seeds ? "kiwi" : "kiwi-flesh";
   exemplar.axes = 3;
   exemplar.size = {n, n, n, 1};
   exemplar.wrap = {Wrap::repeat, Wrap::clamp, Wrap::repeat, Wrap::clamp};
   exemplar.channel = {Channel{}};
   exemplar.texel.resize(exemplar.texel_count() * 3);
 
-  const Palette palette;
+  const Palette palette = with_seeds ? Palette() : flesh_palette();
   const Fields fields(options.seed);
-  const std::vector<KiwiSeed> seeds = kiwi_seeds(options.seed), specks = kiwi::specks(options.seed);
+  const std::vector<KiwiSeed> seeds = with_seeds ? kiwi_seeds(options.seed) : std::vector<KiwiSeed>();
+  std::vector<KiwiSeed> specks = kiwi::specks(options.seed);
+  for (KiwiSeed& speck : specks)
+    speck.half_length = std::max(speck.half_width, palette.speck_length * speck.half_length);
   const std::vector<float> hair = kiwi::hair_brightness(options.seed, fine);
   const std::vector<std::uint8_t> byte = encoding_table();
   constexpr float skin_end = 0.014f, rim_end = 0.034f; // depths: 0.2 mm of skin, browned flesh under it
@@ -217,7 +238,7 @@ Exemplar kiwi_exemplar(const ProceduralOptions& options) {
           const float x = (float(i) + 0.5f) / fine;
           const std::size_t here = std::size_t(j) * fine + i;
           Rgb color = flesh_color(palette, line, at, x);
-          color = mixed(color, palette.speck, 0.68f * things.speck[here]);
+          color = mixed(color, palette.speck, palette.speck_blend * things.speck[here]);
           color = mixed(color, palette.seed_behind, 0.65f * things.shade[here]);
           if (things.seed[here] > 0)
             color = mixed(color, mixed(palette.seed, palette.seed_sheen, 0.5f + 0.5f * line.cell.at(x)),
@@ -241,5 +262,10 @@ Exemplar kiwi_exemplar(const ProceduralOptions& options) {
   });
   return exemplar;
 }
+
+} // namespace
+
+Exemplar kiwi_exemplar(const ProceduralOptions& options) { return kiwi_of(options, true); }
+Exemplar kiwi_flesh_exemplar(const ProceduralOptions& options) { return kiwi_of(options, false); }
 
 } // namespace pith

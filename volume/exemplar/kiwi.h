@@ -31,4 +31,7 @@ inline constexpr int kiwi_locules = 13;
 /// Preconditions as procedural_exemplar, which checks them. O(resolution³): 128³ takes ~0.2 s on two cores.
 Exemplar kiwi_exemplar(const ProceduralOptions& options);
 
+/// The same without seeds, for a kiwi whose seeds are scattered on top as whole things.
+Exemplar kiwi_flesh_exemplar(const ProceduralOptions& options);
+
 } // namespace pith

@@ -12,7 +12,8 @@ struct ProceduralOptions {
 };
 
 /// Axes of a depth-varying (type 2-b) exemplar: x = R (around the fruit, periodic), y = S (depth: 0 skin, 1 core;
-/// clamped), z = T (along the fruit's axis, periodic).
+/// clamped), z = T (along the fruit's axis, periodic). Things to paste (seeds) have a channel "alpha" and repeat
+/// nowhere.
 Exemplar procedural_exemplar(const std::string& name, const ProceduralOptions& options = {});
 
 /// The names that procedural_exemplar knows.
