@@ -39,12 +39,23 @@ Json fill_list(const std::vector<FillReport>& fills) {
   return list;
 }
 
+Json scatter_list(const std::vector<ScatterReport>& scatters) {
+  Json list = Json::array();
+  for (const ScatterReport& scatter : scatters)
+    list.push_back(
+        {{"solid", scatter.solid}, {"entry", scatter.entry}, {"placed", scatter.placed}, {"wanted", scatter.wanted}});
+  return list;
+}
+
 void run(const MakeOptions& options, const Session& session) {
   const auto start = std::chrono::steady_clock::now();
   check_output(options.output, {"pith"});
   Recipe recipe = read_recipe(options.recipe);
   if (session.seed)
-    for (Solid& solid : recipe.solids) solid.fill.seed = *session.seed;
+    for (Solid& solid : recipe.solids) {
+      solid.fill.seed = *session.seed;
+      for (ScatterStep& scatter : solid.scatter) scatter.options.seed = *session.seed;
+    }
 
   BuildOptions build;
   build.cache_bytes = static_cast<std::uint64_t>(options.cache_gigabytes * 1e9);
@@ -69,6 +80,10 @@ void run(const MakeOptions& options, const Session& session) {
         100.0 * double(fill.statistics.inverted) / double(std::max<std::size_t>(1, fill.statistics.lookups)),
         fill.singular.tets, 100 * fill.singular.share));
   if (!result.note.empty()) session.say("note: " + result.note);
+  for (const ScatterReport& scatter : result.scatters)
+    if (scatter.placed < scatter.wanted)
+      session.say(fmt::format("note: /solids/{}/scatter/{}: {} of {} things found room", scatter.solid, scatter.entry,
+                              scatter.placed, scatter.wanted));
   session.say(
       fmt::format("{}: {} tets, {} boundary facets, {} pastes, {} look-ups, {} piece(s); {:.2f} s, {:.0f} MB at most",
                   options.output.string(), result.model.mesh.tet_count(), result.model.boundary.facet_count(),
@@ -78,6 +93,7 @@ void run(const MakeOptions& options, const Session& session) {
                  {"seconds", seconds},
                  {"stages", stage_list(result.stages)},
                  {"fills", fill_list(result.fills)},
+                 {"scatters", scatter_list(result.scatters)},
                  {"peak_memory_bytes", peak_memory_bytes()},
                  {"helper_peak_memory_bytes", helper_peak_memory_bytes()},
                  {"vertices", result.model.mesh.vertex_count()},

@@ -127,6 +127,7 @@ private:
 /// The keys of one solid's stages.
 struct SolidKeys {
   Key depth, along, around, frames, exemplar, fill; ///< of fields that the solid has not: zeros
+  std::vector<Key> scatter_thing, scatter, paste_thing, paste;
 };
 
 class RecipeBuild {
@@ -150,6 +151,7 @@ public:
                        : *pieces_after(model, recipe_.cuts.size() + recipe_.moves.size());
     built.stages = run_.reports();
     built.fills = std::move(fills_);
+    built.scatters = std::move(scatters_);
     return built;
   }
 
@@ -157,6 +159,9 @@ private:
   std::string where(const std::string& path) const { return recipe_.file + ": " + path; }
   static std::string numbered(const char* stage, std::size_t i) {
     return std::string(stage) + " " + std::to_string(i);
+  }
+  static std::string numbered(const char* stage, std::size_t i, std::size_t k) {
+    return numbered(stage, i) + "." + std::to_string(k);
   }
   std::string solid_path(std::size_t i) const { return where("/solids/" + std::to_string(i)); }
 
@@ -205,6 +210,7 @@ private:
         run_.announce(numbered("exemplar", i), keys.exemplar);
         run_.announce(numbered("fill", i), keys.fill);
       }
+      make_thing_keys(i, keys);
       solid_keys_.push_back(keys);
     }
     Key before = tets_key_;
@@ -230,6 +236,38 @@ private:
     return {{{"depth", &solid.depth, &SolidKeys::depth},
              {"along", &solid.along, &SolidKeys::along},
              {"around", &solid.around, &SolidKeys::around}}};
+  }
+
+  /// Pastes stand on the frames alone, or on the tets where they follow none; a scatter also on what it keeps clear
+  /// of: the pastes and the scatters before it.
+  void make_thing_keys(std::size_t i, SolidKeys& keys) {
+    const Solid& solid = recipe_.solids[i];
+    const bool framed = solid.kind == Solid::Kind::lapped;
+    const auto thing_key = [&](const ThingSource& source, const std::string& at) {
+      KeyMaker maker = run_.key("thing").add(exemplar_key(source.exemplar, at + "/exemplar")).add(bool(source.mask));
+      if (source.mask) add(maker, *source.mask);
+      const Key key = maker.key();
+      if (thing_names_.emplace(key, numbered("thing", thing_names_.size())).second)
+        run_.announce(thing_names_[key], key);
+      return key;
+    };
+    for (std::size_t k = 0; k < solid.pastes.size(); ++k) {
+      const PasteStep& step = solid.pastes[k];
+      keys.paste_thing.push_back(thing_key(step.thing, solid_path(i) + "/pastes/" + std::to_string(k)));
+      const bool follows = framed && (step.options.in_frame || step.options.follow == Follow::warped);
+      KeyMaker maker = run_.key("paste").add(follows ? keys.frames : tets_key_).add(keys.paste_thing.back());
+      keys.paste.push_back(add(maker.add(static_cast<int>(solid.region)), step).key());
+      run_.announce(numbered("paste", i, k), keys.paste.back());
+    }
+    for (std::size_t k = 0; k < solid.scatter.size(); ++k) {
+      keys.scatter_thing.push_back(
+          thing_key(solid.scatter[k].thing, solid_path(i) + "/scatter/" + std::to_string(k)));
+      KeyMaker maker = run_.key("scatter").add(framed ? keys.frames : tets_key_).add(keys.scatter_thing.back());
+      for (const Key& taken : keys.paste) maker.add(taken);
+      for (const Key& taken : keys.scatter) maker.add(taken);
+      keys.scatter.push_back(add(maker.add(static_cast<int>(solid.region)), solid.scatter[k]).key());
+      run_.announce(numbered("scatter", i, k), keys.scatter.back());
+    }
   }
 
   Key exemplar_key(const ExemplarSource& source, const std::string& at) const {
@@ -308,7 +346,79 @@ private:
         model.layer.push_back(plain_layer(model.mesh, solid.region, solid.color, "plain " + std::to_string(i)));
       else
         model.layer.push_back(lapped_layer(model, i, vertex_taken));
+      add_things(model, i);
     }
+  }
+
+  Exemplar exemplar_of(const ExemplarSource& source, const std::string& at) const {
+    if (!source.file.empty()) return read_exemplar(input_path(folder_, source.file, at + "/file"));
+    return procedural_exemplar(source.procedural, {.resolution = source.resolution, .seed = source.seed});
+  }
+
+  std::shared_ptr<const Thing> thing_of_source(const Key& key, const ThingSource& source, const std::string& at) {
+    return run_.result<Thing>(thing_names_.at(key), key, true, [&](const Progress&) {
+      return thing_of(exemplar_of(source.exemplar, at + "/exemplar"), source.mask);
+    });
+  }
+
+  /// Scattered things and pastes of a solid, as sparse layers on top of what it has: one for each run of things that
+  /// have the same channels.
+  void add_things(Model& model, std::size_t i) {
+    const Solid& solid = recipe_.solids[i];
+    const SolidKeys& keys = solid_keys_[i];
+    if (solid.scatter.empty() && solid.pastes.empty()) return;
+    std::optional<ScatterGround> made; // only when something has to be computed: the locator takes time
+    const auto ground = [&]() -> const ScatterGround& {
+      if (made) return *made;
+      made.emplace(ScatterGround{{model.mesh, locator(model), solid.region, {}, {}}, {}});
+      if (const auto fields = solid_fields_.find(i); fields != solid_fields_.end()) {
+        made->paste.axes = fields->second.frames->axes;
+        made->paste.scale = fields->second.frames->scale;
+        made->depth = fields->second.depth->value;
+      }
+      return *made;
+    };
+    std::vector<std::shared_ptr<const Thing>> scatter_thing, paste_thing;
+    std::vector<std::shared_ptr<const ScatterResult>> scattered, pasted;
+    std::vector<PlacedBox> taken;
+    const auto take = [&](const ScatterResult& result) {
+      for (const PastedThing& thing : result.pasted) taken.push_back(thing.box);
+    };
+    for (std::size_t k = 0; k < solid.pastes.size(); ++k) {
+      const std::string at = solid_path(i) + "/pastes/" + std::to_string(k);
+      paste_thing.push_back(thing_of_source(keys.paste_thing[k], solid.pastes[k].thing, at));
+      pasted.push_back(run_.result<ScatterResult>(numbered("paste", i, k), keys.paste[k], true, [&](const Progress&) {
+        PasteOptions options = solid.pastes[k].options;
+        options.rotation = solid.pastes[k].turn.rotation();
+        return ScatterResult{{paste(ground().paste, *paste_thing[k], options, at)}, 1};
+      }));
+      take(*pasted[k]);
+    }
+    for (std::size_t k = 0; k < solid.scatter.size(); ++k) {
+      const std::string at = solid_path(i) + "/scatter/" + std::to_string(k);
+      scatter_thing.push_back(thing_of_source(keys.scatter_thing[k], solid.scatter[k].thing, at));
+      scattered.push_back(
+          run_.result<ScatterResult>(numbered("scatter", i, k), keys.scatter[k], true, [&](const Progress& progress) {
+            ScatterOptions options = solid.scatter[k].options;
+            options.rotation = solid.scatter[k].turn.rotation();
+            return scatter(ground(), *scatter_thing[k], options, taken, at, progress);
+          }));
+      take(*scattered[k]);
+      scatters_.push_back({i, k, static_cast<int>(scattered[k]->pasted.size()), scattered[k]->wanted});
+    }
+    std::vector<PastedKind> kinds;
+    const auto add_layer = [&] {
+      if (kinds.empty()) return;
+      model.layer.push_back(layer_of(kinds, solid.region, "things " + std::to_string(i)));
+      kinds.clear();
+    };
+    const auto add_kind = [&](const Thing& thing, const ScatterResult& result) {
+      if (!kinds.empty() && kinds.back().thing->exemplar.channel != thing.exemplar.channel) add_layer();
+      kinds.push_back({&thing, result.pasted});
+    };
+    for (std::size_t k = 0; k < scattered.size(); ++k) add_kind(*scatter_thing[k], *scattered[k]);
+    for (std::size_t k = 0; k < pasted.size(); ++k) add_kind(*paste_thing[k], *pasted[k]);
+    add_layer();
   }
 
   Layer lapped_layer(Model& model, std::size_t i, std::vector<std::uint8_t>& vertex_taken) {
@@ -338,10 +448,7 @@ private:
                        solid.frame);
     });
     const auto exemplar = run_.result<Exemplar>(numbered("exemplar", i), keys.exemplar, true, [&](const Progress&) {
-      const ExemplarSource& source = solid.exemplar;
-      if (!source.file.empty())
-        return read_exemplar(input_path(folder_, source.file, solid_path(i) + "/exemplar/file"));
-      return procedural_exemplar(source.procedural, {.resolution = source.resolution, .seed = source.seed});
+      return exemplar_of(solid.exemplar, solid_path(i) + "/exemplar");
     });
     // The exemplar has a cache entry of its own: the fill's is stored without it.
     const auto fill = run_.result<LapResult>(numbered("fill", i), keys.fill, true, [&](const Progress& progress) {
@@ -359,6 +466,7 @@ private:
       return result;
     });
     add_fields(model, solid.region, depth.get(), *frames, vertex_taken);
+    solid_fields_[i] = {depth, frames};
     fills_.push_back(
         {i, solid.fill.type, fill->statistics, singular_set(model.mesh, solid.region, frames->singular)});
     Layer layer = fill->layer;
@@ -436,7 +544,14 @@ private:
   Key surface_key_, tets_key_;
   std::vector<Key> meshed_keys_; ///< after meshing, and after each divide
   std::vector<SolidKeys> solid_keys_;
+  struct SolidFields {
+    std::shared_ptr<const DepthField> depth;
+    std::shared_ptr<const FrameField> frames;
+  };
+  std::map<std::size_t, SolidFields> solid_fields_; ///< of lapped solids
+  std::map<Key, std::string> thing_names_;          ///< stages
   std::vector<FillReport> fills_;
+  std::vector<ScatterReport> scatters_;
   std::vector<Key> step_keys_;
   std::unique_ptr<Locator> locator_;
 };

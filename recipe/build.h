@@ -4,6 +4,7 @@
 //   surface → tets → divide 0 → divide 1 → … → refine
 //   refine → per solid: depth, along, around → frames ┐
 //                                     exemplar ───────┴→ fill
+//   frames, things → pastes → scatter 0 → scatter 1 → …
 //   refine → cut 0 → cut 1 → … → move 0 → …
 //
 // A changed stroke re-does only what depends on it; an appended cut runs only that cut.
@@ -42,12 +43,19 @@ struct FillReport {
   SingularSet singular; ///< where the solid's frames are not determined
 };
 
+struct ScatterReport {
+  std::size_t solid = 0, entry = 0; ///< of the recipe's solids, and of that solid's scatter
+  int placed = 0;                   ///< things that found room
+  int wanted = 0;
+};
+
 struct BuildResult {
   Model model;
   Pieces pieces;
   std::vector<StageReport> stages; ///< in the order of the chain
   std::vector<FillReport> fills;   ///< one per lapped solid
-  std::string note;                ///< what the user should know (a fall-back taken); empty otherwise
+  std::vector<ScatterReport> scatters;
+  std::string note; ///< what the user should know (a fall-back taken); empty otherwise
 
   std::map<std::string, std::string> keys() const; ///< stage → key, as a .pith file stores them
 };

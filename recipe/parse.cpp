@@ -1,6 +1,7 @@
 // Recipe: the document as a whole, its surface and its solids. docs/recipe.md is the manual of the format.
 #include "recipe/json_node.h"
 #include "recipe/parse_steps.h"
+#include "recipe/parse_things.h"
 #include "recipe/parse_types.h"
 #include "recipe/recipe.h"
 #include "volume/base/error.h"
@@ -116,6 +117,8 @@ std::vector<AxisStroke> orientation_from(const JsonNode& node) {
   return result;
 }
 
+} // namespace
+
 ExemplarSource exemplar_from(const JsonNode& node) {
   node.object({"file", "procedural", "resolution", "seed"});
   ExemplarSource result;
@@ -157,6 +160,8 @@ void read_mask(const JsonNode& node, SplotchOptions& mask) {
   if (mask.drop_off > mask.radius) node.fail("has a drop_off wider than its radius", "make drop_off the smaller one");
 }
 
+namespace {
+
 void read_frame(const JsonNode& node, FrameOptions& frame) {
   node.object({"layer_width", "singular_sine", "vanishing_rise", "smallest_scale", "largest_scale", "axis"});
   node.optional_number("layer_width", frame.layer_width, range::positive);
@@ -190,16 +195,17 @@ Solid solid_from(const JsonNode& node) {
     result.region = static_cast<std::int32_t>(
         region->whole(0, 1'000'000, "regions count from 0, one per closed shell, then those made by \"divide\""));
   if (type == 0) {
-    node.object({"type", "region", "color"});
+    node.object({"type", "region", "color", "scatter", "pastes"});
     result.kind = Solid::Kind::plain;
     const JsonNode color = node.at("color");
     result.color = color.vector3();
     if ((result.color.array() < 0).any() || (result.color.array() > 1).any())
       color.fail("has a component outside 0 to 1", "give linear red, green, blue");
+    read_things(node, result);
     return result;
   }
   node.object({"type", "region", "depth", "along", "around", "depth_options", "orientation", "scale", "local_scale",
-               "frame", "exemplar", "mask", "fill", "seed"});
+               "frame", "exemplar", "mask", "fill", "seed", "scatter", "pastes"});
   result.fill.type = static_cast<TextureType>(type - 1);
   check_keys_of_type(node, result.fill.type);
   if (const auto depth = node.find("depth")) result.depth = field_from(*depth, "depth");
@@ -222,6 +228,7 @@ Solid solid_from(const JsonNode& node) {
   if (const auto mask = node.find("mask")) read_mask(*mask, result.fill.splotch);
   if (const auto fill = node.find("fill")) read_fill(*fill, result.fill);
   node.optional_seed("seed", result.fill.seed);
+  read_things(node, result);
   return result;
 }
 

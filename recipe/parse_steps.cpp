@@ -30,13 +30,6 @@ SphereCut sphere_from(const JsonNode& node) {
   return result;
 }
 
-/// { "axis": [x, y, z], "angle": radians }
-void read_turn(const JsonNode& node, Vec3d& axis, double& angle) {
-  axis = node.at("axis").vector3();
-  if (!(axis.norm() > 0)) node.at("axis").fail("has no length", "give a direction such as [0, 0, 1]");
-  angle = node.at("angle").number({-1e6, 1e6, false, "an angle", "give radians"});
-}
-
 PiecePlacement placement_from(const JsonNode& node) {
   node.object({"piece", "rotation", "translation"});
   PiecePlacement result;
@@ -73,6 +66,12 @@ SurfaceSource surface_from(const JsonNode& node) {
   result.file = node.at("file").text();
   node.optional_number("scale", result.scale, range::positive);
   return result;
+}
+
+void read_turn(const JsonNode& node, Vec3d& axis, double& angle) {
+  axis = node.at("axis").vector3();
+  if (!(axis.norm() > 0)) node.at("axis").fail("has no length", "give a direction such as [0, 0, 1]");
+  angle = node.at("angle").number({-1e6, 1e6, false, "an angle", "give radians"});
 }
 
 StrokeCut stroke_from(const JsonNode& node) {

@@ -12,5 +12,7 @@ CutStep cut_from(const JsonNode& node);
 StrokeCut stroke_from(const JsonNode& node);
 MoveStep move_from(const JsonNode& node);
 View view_from(const JsonNode& node);
+/// { "axis": [x, y, z], "angle": radians }
+void read_turn(const JsonNode& node, Vec3d& axis, double& angle);
 
 } // namespace pith

@@ -6,6 +6,7 @@
 #include "volume/field/depth.h"
 #include "volume/field/frames.h"
 #include "volume/lap/lap.h"
+#include "volume/lap/scatter.h"
 #include "volume/mesh/tetrahedralize.h"
 
 #include <filesystem>
@@ -30,6 +31,33 @@ struct ExemplarSource {
   std::uint64_t seed = 1; ///< of a procedural exemplar
 };
 
+/// A turn by an angle (radians) about an axis of any length above 0.
+struct Turn {
+  Vec3d axis{0, 0, 1};
+  double angle = 0;
+  Mat3d rotation() const { return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix(); }
+};
+
+/// What a thing is cut from: an exemplar with a channel "alpha", or any exemplar under a mask.
+struct ThingSource {
+  ExemplarSource exemplar;
+  std::optional<SplotchOptions> mask;
+};
+
+/// One thing pasted by hand.
+struct PasteStep {
+  ThingSource thing;
+  Turn turn;
+  PasteOptions options; ///< all but the rotation, which is turn's
+};
+
+/// Many things placed by a rule.
+struct ScatterStep {
+  ThingSource thing;
+  Turn turn;
+  ScatterOptions options; ///< all but the rotation, which is turn's
+};
+
 /// What one region is made of.
 struct Solid {
   enum class Kind {
@@ -51,6 +79,9 @@ struct Solid {
   FrameOptions frame;
   ExemplarSource exemplar;
   LapOptions fill; ///< type, seed, mask (splotch) and limits
+
+  std::vector<ScatterStep> scatter; ///< on top of all that; each keeps clear of those before it and of all pastes
+  std::vector<PasteStep> pastes;    ///< on top of the scattered ones; later ones over earlier ones
 };
 
 /// Which side of a cut stays.

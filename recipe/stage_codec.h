@@ -4,6 +4,7 @@
 #include "volume/cut/piece.h"
 #include "volume/field/frames.h"
 #include "volume/lap/lap.h"
+#include "volume/lap/scatter.h"
 #include "volume/layer/layer.h"
 #include "volume/mesh/tetrahedralize.h"
 
@@ -150,6 +151,51 @@ requires MaybeConst<Item, LapResult>
 void transfer(Archive& archive, Item& result) {
   transfer(archive, result.layer);
   transfer(archive, result.statistics);
+}
+
+template <class Archive, class Item>
+requires MaybeConst<Item, Box>
+void transfer(Archive& archive, Item& box) {
+  transfer(archive, box.low);
+  transfer(archive, box.high);
+}
+
+template <class Archive, class Item>
+requires MaybeConst<Item, Occupancy>
+void transfer(Archive& archive, Item& occupancy) {
+  transfer_list(archive, occupancy.cell);
+  transfer(archive, occupancy.bounds);
+}
+
+template <class Archive, class Item>
+requires MaybeConst<Item, Thing>
+void transfer(Archive& archive, Item& thing) {
+  transfer(archive, thing.exemplar);
+  transfer(archive, thing.mask);
+  transfer(archive, thing.frame);
+  transfer(archive, thing.solid);
+  transfer(archive, thing.volume);
+  transfer(archive, thing.any);
+  transfer(archive, thing.half);
+}
+
+template <class Archive, class Item>
+requires MaybeConst<Item, PastedThing>
+void transfer(Archive& archive, Item& pasted) {
+  transfer(archive, pasted.key);
+  transfer(archive, pasted.box.center);
+  transfer(archive, pasted.box.axes);
+  transfer(archive, pasted.box.half);
+  transfer_list(archive, pasted.tet);
+  transfer_list(archive, pasted.corner);
+  transfer_list(archive, pasted.coordinate);
+}
+
+template <class Archive, class Item>
+requires MaybeConst<Item, ScatterResult>
+void transfer(Archive& archive, Item& result) {
+  transfer_list(archive, result.pasted);
+  transfer(archive, result.wanted);
 }
 
 template <class Archive, class Item>

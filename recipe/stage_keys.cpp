@@ -73,8 +73,7 @@ KeyMaker& add(KeyMaker& maker, const FrameOptions& options) {
 }
 
 KeyMaker& add(KeyMaker& maker, const LapOptions& options) {
-  const SplotchOptions& mask = options.splotch;
-  return maker.add(static_cast<int>(options.type))
+  maker.add(static_cast<int>(options.type))
       .add(options.seed)
       .add(options.frame_tolerance)
       .add(options.scale_tolerance)
@@ -82,8 +81,12 @@ KeyMaker& add(KeyMaker& maker, const LapOptions& options) {
       .add(options.sample_spacing)
       .add(options.mask_variants)
       .add(options.align)
-      .add(options.max_attempts)
-      .add(mask.axes)
+      .add(options.max_attempts);
+  return add(maker, options.splotch);
+}
+
+KeyMaker& add(KeyMaker& maker, const SplotchOptions& mask) {
+  return maker.add(mask.axes)
       .add(mask.resolution)
       .add(mask.radius)
       .add(mask.radius_outer)
@@ -103,6 +106,42 @@ KeyMaker& add(KeyMaker& maker, const DivideStep& step) {
   maker.add(step.surface.has_value()); // the file's content is the builder's to add
   if (step.surface) maker.add(step.surface->scale);
   return maker.add(step.snap);
+}
+
+KeyMaker& add(KeyMaker& maker, const PasteStep& step) {
+  const PasteOptions& o = step.options;
+  return maker.add(o.place)
+      .add(o.size)
+      .add(step.turn.axis)
+      .add(step.turn.angle)
+      .add(o.in_frame)
+      .add(static_cast<int>(o.follow))
+      .add(o.clip);
+}
+
+KeyMaker& add(KeyMaker& maker, const ScatterStep& step) {
+  const ScatterOptions& o = step.options;
+  return maker.add(o.count)
+      .add(o.spacing)
+      .add(o.gap)
+      .add(o.size)
+      .add(o.size_variation)
+      .add(o.depth[0])
+      .add(o.depth[1])
+      .add(o.axis[0])
+      .add(o.axis[1])
+      .add(o.along[0])
+      .add(o.along[1])
+      .add(o.groups)
+      .add(o.group_width)
+      .add(step.turn.axis)
+      .add(step.turn.angle)
+      .add(o.in_frame)
+      .add(o.jitter)
+      .add(o.spin)
+      .add(static_cast<int>(o.follow))
+      .add(o.clip)
+      .add(o.seed);
 }
 
 KeyMaker& add(KeyMaker& maker, const CutStep& step) {

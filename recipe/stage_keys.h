@@ -13,6 +13,9 @@ KeyMaker& add(KeyMaker& maker, const std::vector<ScaleConstraint>& constraints);
 KeyMaker& add(KeyMaker& maker, const FrameOptions& options);
 KeyMaker& add(KeyMaker& maker, const LapOptions& options);
 KeyMaker& add(KeyMaker& maker, const DivideStep& step);
+KeyMaker& add(KeyMaker& maker, const SplotchOptions& mask);
+KeyMaker& add(KeyMaker& maker, const PasteStep& step);   ///< without its thing
+KeyMaker& add(KeyMaker& maker, const ScatterStep& step); ///< without its thing
 KeyMaker& add(KeyMaker& maker, const CutStep& step);
 KeyMaker& add(KeyMaker& maker, const MoveStep& step);
 

@@ -101,6 +101,51 @@ json json_from(const ScaleConstraint& local) {
   return result;
 }
 
+/// What pastes and scatter share, after the thing itself.
+template <class Step>
+void put_common(json& into, const Step& step) {
+  const std::remove_cvref_t<decltype(step.options)> usual;
+  into["size"] = step.options.size;
+  if (!step.options.in_frame) into["axes"] = "rest";
+  if (step.turn.angle != 0) into["rotate"] = {{"axis", json_from(step.turn.axis)}, {"angle", step.turn.angle}};
+  if (step.options.follow == Follow::warped) into["follow"] = "warped";
+  put(into, "clip", step.options.clip, usual.clip);
+}
+
+json thing_json(const ThingSource& thing) {
+  json result = {{"exemplar", json_from(thing.exemplar)}};
+  if (thing.mask) result["mask"] = json_from(*thing.mask); // an empty one says that there is a mask
+  return result;
+}
+
+json json_from(const PasteStep& step) {
+  json result = thing_json(step.thing);
+  result["place"] = json_from(step.options.place);
+  put_common(result, step);
+  return result;
+}
+
+json json_from(const ScatterStep& step) {
+  const ScatterOptions& o = step.options;
+  const ScatterOptions usual;
+  json result = thing_json(step.thing);
+  put(result, "count", o.count, usual.count);
+  put(result, "spacing", o.spacing, usual.spacing);
+  put(result, "gap", o.gap, usual.gap);
+  put_common(result, step);
+  put(result, "size_variation", o.size_variation, usual.size_variation);
+  if (o.depth != usual.depth) result["depth"] = {o.depth[0], o.depth[1]};
+  if (o.axis != usual.axis || o.along != usual.along || o.groups != usual.groups)
+    result["axis"] = {json_from(o.axis[0]), json_from(o.axis[1])};
+  if (o.along != usual.along) result["along"] = {o.along[0], o.along[1]};
+  put(result, "groups", o.groups, usual.groups);
+  put(result, "group_width", o.group_width, usual.group_width);
+  put(result, "jitter", o.jitter, usual.jitter);
+  put(result, "spin", o.spin, usual.spin);
+  result["seed"] = o.seed;
+  return result;
+}
+
 json json_from(const Solid& solid);
 json json_from(const DivideStep& divide);
 json json_from(const CutStep& cut);
@@ -118,6 +163,8 @@ json json_from(const Solid& solid) {
   if (solid.kind == Solid::Kind::plain) {
     result["type"] = "plain";
     result["color"] = json_from(solid.color);
+    put_list(result, "scatter", solid.scatter);
+    put_list(result, "pastes", solid.pastes);
     return result;
   }
   result["type"] = traits_of(solid.fill.type).name;
@@ -145,6 +192,8 @@ json json_from(const Solid& solid) {
   put(fill, "max_attempts", solid.fill.max_attempts, usual.max_attempts);
   put_object(result, "fill", std::move(fill));
   result["seed"] = solid.fill.seed;
+  put_list(result, "scatter", solid.scatter);
+  put_list(result, "pastes", solid.pastes);
   return result;
 }
 

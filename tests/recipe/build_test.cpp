@@ -121,6 +121,82 @@ TEST_F(Build, AnEditDoesAgainOnlyWhatDependsOnIt) {
   EXPECT_EQ(done_again(builder.build(recipe, folder.path())), Names{});
 }
 
+TEST_F(Build, ThingsDoAgainOnlyThemselves) {
+  Builder builder(with_disk());
+  const auto paste_at = [](const Vec3d& place) {
+    PasteStep step;
+    step.thing.exemplar.procedural = "kiwi-seed";
+    step.thing.exemplar.resolution = 16;
+    step.options.place = place;
+    step.options.size = 4;
+    return step;
+  };
+  recipe.solids[0].pastes = {paste_at({8, 0, 0})};
+  Names with_paste = all;
+  with_paste.insert({"thing 0", "paste 0.0"});
+  const BuildResult first = builder.build(recipe, folder.path());
+  EXPECT_EQ(done_again(first), with_paste);
+  ASSERT_EQ(first.model.layer.size(), 2u);
+  EXPECT_EQ(first.model.layer[1].patch.size(), 1u);
+  EXPECT_LT(first.model.layer[1].simplex.size(), first.model.mesh.tet_count() / 4);
+
+  recipe.solids[0].pastes.push_back(paste_at({-8, 0, 0})); // a fold: what was there stays
+  EXPECT_EQ(done_again(builder.build(recipe, folder.path())), (Names{"paste 0.1"}));
+  recipe.solids[0].pastes[0].options.size = 3;
+  const BuildResult edited = builder.build(recipe, folder.path());
+  EXPECT_EQ(done_again(edited), (Names{"paste 0.0"}));
+  EXPECT_EQ(edited.model.layer[1].patch.size(), 2u);
+  EXPECT_EQ(edited.model.layer[1].exemplar.size(), 2u);
+
+  ScatterStep scatter;
+  scatter.thing = recipe.solids[0].pastes[0].thing;
+  scatter.options.count = 20;
+  scatter.options.size = 3;
+  recipe.solids[0].scatter = {scatter};
+  const BuildResult scattered = builder.build(recipe, folder.path());
+  EXPECT_EQ(done_again(scattered), (Names{"scatter 0.0"}));
+  ASSERT_EQ(scattered.scatters.size(), 1u);
+  EXPECT_EQ(scattered.scatters[0].placed, 20);
+  EXPECT_EQ(scattered.model.layer[1].patch.size(), 22u);
+  recipe.solids[0].scatter[0].options.jitter = 0.5;
+  EXPECT_EQ(done_again(builder.build(recipe, folder.path())), (Names{"scatter 0.0"}));
+  recipe.solids[0].scatter.push_back(scatter);
+  recipe.solids[0].scatter[1].options.seed = 2;
+  EXPECT_EQ(done_again(builder.build(recipe, folder.path())), (Names{"scatter 0.1"}));
+  recipe.solids[0].pastes.pop_back(); // scatters keep clear of pastes
+  const BuildResult last = builder.build(recipe, folder.path());
+  EXPECT_EQ(done_again(last), (Names{"scatter 0.0", "scatter 0.1"}));
+
+  // The next process finds it all on disk.
+  const BuildResult next = Builder(with_disk()).build(recipe, folder.path());
+  EXPECT_EQ(done_again(next), Names{});
+  EXPECT_EQ(next.model.layer[1].corner, last.model.layer[1].corner);
+  EXPECT_EQ(next.model.layer[1].mask.at(0).alpha, last.model.layer[1].mask.at(0).alpha);
+
+  // A plain solid takes things too; what it has no fields for is refused.
+  Recipe plain = recipe;
+  plain.solids[0].kind = Solid::Kind::plain;
+  EXPECT_EQ(builder.build(plain, folder.path()).model.layer.size(), 2u);
+  const auto message = [&](const Recipe& broken) -> std::string {
+    try {
+      builder.build(broken, folder.path());
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  plain.solids[0].scatter[0].options.depth = {0.5, 1};
+  EXPECT_EQ(message(plain).find("ball.json: /solids/0/scatter/0/depth: is given for a solid that has no depth"), 0u)
+      << message(plain);
+  Recipe broken = recipe;
+  broken.solids[0].pastes[0].options.place = {0, 0, 90};
+  EXPECT_EQ(message(broken).find("ball.json: /solids/0/pastes/0/place: lies outside region 0"), 0u)
+      << message(broken);
+  broken = recipe;
+  broken.solids[0].pastes[0].thing.exemplar.procedural = "kiwi";
+  EXPECT_NE(message(broken).find("does not say where it is opaque"), std::string::npos) << message(broken);
+}
+
 TEST_F(Build, CutsAreAFold) {
   Builder builder(in_memory());
   recipe.moves.clear();

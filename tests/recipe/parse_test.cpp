@@ -21,8 +21,14 @@ std::string kiwi(const std::string& from = "", const std::string& to = "") {
       "mask": {"radius": 0.38, "drop_off": 0.05},
       "fill": {"coverage_order": 6},
       "frame": {"largest_scale": 40},
-      "seed": 7
-    }, {"region": 1, "type": "plain", "color": [0.3, 0.2, 0.1]}],
+      "seed": 7,
+      "scatter": [{"exemplar": {"procedural": "kiwi-seed", "resolution": 32}, "count": 90, "spacing": 1.5, "size": 2.2,
+        "size_variation": 0.2, "gap": 0.1, "depth": [0.6, 0.9], "axis": [[0, 0, -20], [0, 0, 20]], "along": [0.1, 0.8],
+        "groups": 24, "group_width": 0.5, "jitter": 0.3, "spin": 0.4, "clip": true, "seed": 5}],
+      "pastes": [{"exemplar": {"procedural": "watermelon-seed"}, "place": [8, 1, 2], "size": 6, "axes": "rest",
+        "rotate": {"axis": [1, 1, 0], "angle": 0.25}, "follow": "warped", "clip": false}]
+    }, {"region": 1, "type": "plain", "color": [0.3, 0.2, 0.1],
+      "pastes": [{"exemplar": {"procedural": "kiwi"}, "mask": {"radius": 0.25}, "place": [0, 0, 1.5], "size": 3}]}],
     "cuts": [
       {"plane": {"normal": [0, 0, 1], "offset": 0.5}, "spread": 10},
       {"sphere": {"center": [1, 2, 3], "radius": 4}, "keep": "left", "only": [0, 0, 9]},
@@ -68,6 +74,29 @@ TEST(Recipe, IsReadInFull) {
   EXPECT_EQ(flesh.fill.coverage_order, 6);
   EXPECT_EQ(flesh.frame.largest_scale, 40);
   EXPECT_EQ(flesh.fill.seed, 7u);
+  const ScatterOptions& scatter = flesh.scatter.at(0).options;
+  EXPECT_EQ(flesh.scatter.at(0).thing.exemplar.procedural, "kiwi-seed");
+  EXPECT_EQ(scatter.count, 90);
+  EXPECT_EQ(scatter.spacing, 1.5);
+  EXPECT_EQ(scatter.gap, 0.1);
+  EXPECT_EQ(scatter.size_variation, 0.2);
+  EXPECT_EQ(scatter.depth, (std::array{0.6, 0.9}));
+  EXPECT_EQ(scatter.axis[1], Vec3d(0, 0, 20));
+  EXPECT_EQ(scatter.along, (std::array{0.1, 0.8}));
+  EXPECT_EQ(scatter.groups, 24);
+  EXPECT_EQ(scatter.group_width, 0.5);
+  EXPECT_EQ(scatter.jitter, 0.3);
+  EXPECT_EQ(scatter.spin, 0.4);
+  EXPECT_TRUE(scatter.clip);
+  EXPECT_EQ(scatter.seed, 5u);
+  const PasteStep& paste = flesh.pastes.at(0);
+  EXPECT_EQ(paste.options.place, Vec3d(8, 1, 2));
+  EXPECT_EQ(paste.options.size, 6);
+  EXPECT_FALSE(paste.options.in_frame);
+  EXPECT_EQ(paste.options.follow, Follow::warped);
+  EXPECT_FALSE(paste.options.clip);
+  EXPECT_EQ(paste.turn.angle, 0.25);
+  EXPECT_EQ(recipe.solids[1].pastes.at(0).thing.mask->radius, 0.25);
   EXPECT_EQ(recipe.solids[1].kind, Solid::Kind::plain);
   EXPECT_EQ(recipe.solids[1].color, Vec3d(0.3, 0.2, 0.1));
   ASSERT_EQ(recipe.cuts.size(), 3u);
@@ -89,7 +118,12 @@ TEST(Recipe, WrittenTextReadsBackAlike) {
   EXPECT_EQ(once, twice);
   for (const char* part : {"\"radius\": 0.38", "\"coverage_order\": 6", "\"largest_scale\": 40", "\"seed\": 7",
                            "\"spread\": 10", "\"keep\": \"left\"", "[0, 0, 9]", "\"angle\": 0.5", "\"height\": 80",
-                           "studio.json", "\"scale\": 2", "\"resolution\": 64", "[0, -1, 0]", "[0.3, 0.2, 0.1]"})
+                           "studio.json", "\"scale\": 2", "\"resolution\": 64", "[0, -1, 0]", "[0.3, 0.2, 0.1]",
+                           "\"count\": 90", "\"spacing\": 1.5", "\"gap\": 0.1", "\"along\": [0.1, 0.8]",
+                           "\"groups\": 24", "\"group_width\": 0.5", "\"jitter\": 0.3", "\"spin\": 0.4",
+                           "\"size_variation\": 0.2", "\"depth\": [0.6, 0.9]", "\"place\": [8, 1, 2]",
+                           "\"axes\": \"rest\"", "\"follow\": \"warped\"", "\"clip\": true", "\"clip\": false",
+                           "\"radius\": 0.25", "\"angle\": 0.25"})
     EXPECT_NE(once.find(part), std::string::npos) << part << " is lost in\n" << once;
 }
 
@@ -116,6 +150,14 @@ TEST_P(RecipeMistakes, AreRefusedWhereTheyStand) {
 // clang-format off
 INSTANTIATE_TEST_SUITE_P(Recipe, RecipeMistakes, ::testing::ValuesIn(std::vector<Mistake>{
   {"Negative", "\"interior_edge\": 4", "\"interior_edge\": -3", "kiwi.json: /tetrahedralize/interior_edge: is -3, must be positive"},
+  {"NoCount", "\"count\": 90, \"spacing\": 1.5,", "", "kiwi.json: /solids/0/scatter/0: says neither how many nor how far apart"},
+  {"ThingSize", "\"size\": 2.2", "\"size\": 0", "kiwi.json: /solids/0/scatter/0/size: is 0, must be positive"},
+  {"NoThing", "\"watermelon-seed\"", "\"melon-seed\"", "kiwi.json: /solids/0/pastes/0/exemplar/procedural: is \"melon-seed\", which no generator makes"},
+  {"NoPlace", "\"place\": [8, 1, 2],", "", "kiwi.json: /solids/0/pastes/0: lacks \"place\""},
+  {"EmptyBand", "\"depth\": [0.6, 0.9]", "\"depth\": [0.9, 0.6]", "kiwi.json: /solids/0/scatter/0/depth: is empty"},
+  {"WideBand", "\"depth\": [0.6, 0.9]", "\"depth\": [0.6, 1.9]", "kiwi.json: /solids/0/scatter/0/depth: must be 0 to 1"},
+  {"NoAxis", "\"axis\": [[0, 0, -20], [0, 0, 20]],", "", "kiwi.json: /solids/0/scatter/0/along: is given without \"axis\""},
+  {"UnknownAxes", "\"axes\": \"rest\"", "\"axes\": \"world\"", "kiwi.json: /solids/0/pastes/0/axes: is \"world\", which is not known"},
   {"Text", "\"interior_edge\": 4", "\"interior_edge\": \"4\"", "kiwi.json: /tetrahedralize/interior_edge: is \"4\", must be a number; give millimetres"},
   {"NotANumber", "\"interior_edge\": 4", "\"interior_edge\": NaN", "kiwi.json: is not JSON: line 4, column"},
   {"Endless", "\"interior_edge\": 4", "\"interior_edge\": 1e999", "kiwi.json: holds a number too large"},
