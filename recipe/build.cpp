@@ -374,7 +374,7 @@ private:
       if (const auto fields = solid_fields_.find(i); fields != solid_fields_.end()) {
         made->paste.axes = fields->second.frames->axes;
         made->paste.scale = fields->second.frames->scale;
-        made->depth = fields->second.depth->value;
+        if (fields->second.depth) made->depth = fields->second.depth->value;
       }
       return *made;
     };

@@ -20,7 +20,9 @@ TEST_P(Seeds, AreWholeAndPointToTheCore) {
     for (int y = 0; y < n; ++y)
       for (int x = 0; x < n; ++x) {
         const std::uint8_t* texel = e.at(x, y, z);
-        if (std::min({x, y, z}) == 0 || std::max({x, y, z}) == n - 1) ASSERT_EQ(texel[3], 0) << x << y << z;
+        if (std::min({x, y, z}) == 0 || std::max({x, y, z}) == n - 1) {
+          ASSERT_EQ(texel[3], 0) << x << y << z;
+        }
         if (texel[3] < 128) continue;
         ++width[y];
         ++opaque;
@@ -31,7 +33,9 @@ TEST_P(Seeds, AreWholeAndPointToTheCore) {
   int changes = 0;
   for (int y = 1; y < n; ++y) changes += (width[y] > 0) != (width[y - 1] > 0);
   EXPECT_EQ(changes, 2); // one piece along its length
-  if (std::string(GetParam()) == "kiwi-seed") EXPECT_LT(dark / opaque, 0.05);
+  if (std::string(GetParam()) == "kiwi-seed") {
+    EXPECT_LT(dark / opaque, 0.05);
+  }
   EXPECT_EQ(procedural_exemplar(GetParam(), {.resolution = 48}).texel, e.texel);
   EXPECT_NE(procedural_exemplar(GetParam(), {.resolution = 48, .seed = 2}).texel, e.texel);
 }

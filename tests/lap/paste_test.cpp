@@ -120,7 +120,9 @@ TEST_F(Things, StandInTheirGroupsWithTheirPointsInwards) {
     const double off = std::min(std::abs(turn - std::round(turn)), std::abs(turn + 0.5 - std::round(turn + 0.5)));
     EXPECT_LE(off, 0.35 + 1e-9);
     const Vec3d inwards = -Vec3d(x.x(), x.y(), 0).normalized();
-    if (std::abs(x.z()) < 10) EXPECT_GT(thing.box.axes.col(1).dot(inwards), 0.7);
+    if (std::abs(x.z()) < 10) {
+      EXPECT_GT(thing.box.axes.col(1).dot(inwards), 0.7);
+    }
   }
 }
 
@@ -160,7 +162,9 @@ TEST_F(Things, KeepClearOfWhatIsTaken) {
     EXPECT_FALSE(thing.box.meets(taken));
     if (!keys.contains(thing.key)) ++moved;
     for (const PastedThing& other : rest.pasted)
-      if (other.key != thing.key) EXPECT_GE((other.box.center - thing.box.center).norm(), 4.0);
+      if (other.key != thing.key) {
+        EXPECT_GE((other.box.center - thing.box.center).norm(), 4.0);
+      }
   }
   EXPECT_LT(moved, all.pasted.size() / 4); // a local change stays local
 }
@@ -178,7 +182,9 @@ TEST_F(Things, APasteLiesWhereItWasPutAndAsItWasTurned) {
     EXPECT_TRUE(std::is_sorted(thing.tet.begin(), thing.tet.end()));
     EXPECT_EQ(thing.box.center, o.place);
     EXPECT_NEAR(2 * thing.box.half.maxCoeff(), o.size, 1e-9);
-    if (!o.in_frame) EXPECT_TRUE(thing.box.axes.isApprox(o.rotation, 1e-12));
+    if (!o.in_frame) {
+      EXPECT_TRUE(thing.box.axes.isApprox(o.rotation, 1e-12));
+    }
     EXPECT_TRUE((thing.box.axes.transpose() * thing.box.axes).isIdentity(1e-9));
     const Root root = root_with({thing}, *seed);
     for (int k = 0; k < 200; ++k) {
@@ -313,12 +319,14 @@ TEST(PlacedBox, MeetsExactlyWhereAPointIsShared) {
     Vec3d x = a.center;
     const auto gap = [&] { return (x - nearest(b, x)).norm(); };
     for (int k = 0; k < 200000 && (k < 2000 || (gap() > 1e-7 && gap() < 0.02)); ++k) x = nearest(a, nearest(b, x));
-    const double distance = gap(); // bodies that touch at a narrow angle take long
+    const double distance = gap();                    // bodies that touch at a narrow angle take long
     if (distance > 1e-6 && distance < 1e-3) continue; // too near to tell
     met += distance <= 1e-6;
     EXPECT_EQ(a.meets(b), distance <= 1e-6) << i << ": " << distance;
     EXPECT_EQ(b.meets(a), distance <= 1e-6) << i;
-    if (distance > 0.01) EXPECT_TRUE(a.meets(b, distance * 1.01)) << i;
+    if (distance > 0.01) {
+      EXPECT_TRUE(a.meets(b, distance * 1.01)) << i;
+    }
   }
   EXPECT_GT(met, 50);
 }

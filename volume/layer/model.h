@@ -32,8 +32,8 @@ void validate(const Model& model);
 struct MaterialPoint {
   Vec3d position = Vec3d::Zero(); ///< in rest space, mm
   std::int32_t region = -1;       ///< the side: which region, for points on an interface; −1: any
-  FacetId facet; ///< on the skin: the root facet, so that skin layers count; none inside or on a section
-  TetId hint;    ///< a root tet near the point: speed only
+  FacetId facet{}; ///< on the skin: the root facet, so that skin layers count; none inside or on a section
+  TetId hint{};    ///< a root tet near the point: speed only
 };
 
 /// What is there.

@@ -42,7 +42,8 @@ CoverageMeasure coverage_measure(const Root& root, const CoverageOptions& option
       const VolumePoint point = source.point(options.seed, i);
       const std::int32_t region = model.mesh.region[point.tet];
       float shines = 1;
-      for (const auto& [reader, component] : root.tables().layers) {
+      for (const auto& entry : root.tables().layers) {
+        const LayerReader& reader = entry.reader;
         const Layer& layer = *reader.layer;
         if (layer.domain != Domain::solid || (layer.region >= 0 && layer.region != region)) continue;
         look_at(reader, point.tet, point.barycentric, sighting);
