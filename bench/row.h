@@ -81,6 +81,7 @@ void keep(const T& value) {
 std::vector<Row> build_rows();  ///< build/*, info/*
 std::vector<Row> mesh_rows();   ///< tetrahedralize/*
 std::vector<Row> lap_rows();    ///< lap/*
+std::vector<Row> field_rows();  ///< rbf/*
 std::vector<Row> sample_rows(); ///< sample/*
 std::vector<Row> cut_rows();    ///< cut/*
 
