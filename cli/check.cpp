@@ -1,7 +1,9 @@
 // pith check FILE: is this surface or model usable? Figures, and how to mend what is wrong.
 #include "cli/command.h"
 #include "cli/pieces_report.h"
+#include "recipe/recipe.h"
 #include "volume/base/error.h"
+#include "volume/field/depth_extrema.h"
 #include "volume/io/mesh_io.h"
 #include "volume/io/model_io.h"
 #include "volume/measure/coverage.h"
@@ -79,6 +81,30 @@ void check_surface(const CheckOptions& options, const Session& session) {
   if (!usable) throw InvalidInput(options.file.string(), defects.summary(), "the file is damaged, export it again");
 }
 
+/// Local extrema of the depth of each solid that none of its constraints asks for.
+std::vector<Finding> depth_findings(const ModelFile& file) {
+  std::vector<Finding> findings;
+  const Model& model = file.model;
+  if (file.recipe.empty() || model.field.depth.size() != model.mesh.vertex_count()) return findings;
+  const Recipe recipe = parse_recipe(file.recipe, "recipe.json");
+  for (const Solid& solid : recipe.solids) {
+    if (solid.depth.empty()) continue;
+    const PerVertex<std::uint8_t> constrained =
+        constrained_vertices(model.mesh, model.boundary, solid.region, solid.depth, "depth", solid.depth_options);
+    const std::vector<DepthExtremum> extrema = extrema_of(model.mesh, solid.region, model.field.depth, constrained,
+                                                          std::max(solid.depth_options.persistence, 1e-3));
+    if (extrema.empty()) continue;
+    const DepthExtremum& worst = extrema.front();
+    findings.push_back(
+        {fmt::format("local extrema of depth in region {} that no constraint asks for (the worst: a {} "
+                     "of {:.3g} at ({:.6g}, {:.6g}, {:.6g}) that persists by {:.3g})",
+                     solid.region, worst.maximum ? "maximum" : "minimum", worst.depth, worst.place.x(),
+                     worst.place.y(), worst.place.z(), worst.persistence),
+         extrema.size(), "leave depth_options/extrema at \"remove\", or give places near them a depth"});
+  }
+  return findings;
+}
+
 void check_model(const CheckOptions& options, const Session& session) {
   ModelFile file = read_model(options.file);
   std::vector<Finding> findings;
@@ -106,6 +132,7 @@ void check_model(const CheckOptions& options, const Session& session) {
                                 : fmt::format("{} non-manifold edges, {} non-manifold vertices",
                                               report.non_manifold_edges, report.non_manifold_vertices)));
   }
+  for (Finding& finding : depth_findings(file)) findings.push_back(std::move(finding));
   double root_volume = 0;
   for (const TetId tet : all_ids<TetId>(file.model.mesh.tet_count()))
     root_volume += signed_volume(file.model.mesh, tet);

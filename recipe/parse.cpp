@@ -37,14 +37,15 @@ TetrahedralizeOptions tetrahedralize_from(const JsonNode& node) {
 }
 
 DepthConstraint depth_from(const JsonNode& node) {
-  node.object({"skin", "outside", "interface", "triangles", "stroke", "value"});
+  node.object({"skin", "outside", "interface", "triangles", "fill", "crease", "stroke", "value"});
   DepthConstraint result;
   result.value = node.at("value").number({0, 1, false, "0 to 1", "0 is the outermost depth, 1 the innermost"});
-  const int places =
-      node.has("skin") + node.has("outside") + node.has("interface") + node.has("triangles") + node.has("stroke");
+  const int places = node.has("skin") + node.has("outside") + node.has("interface") + node.has("triangles") +
+                     node.has("fill") + node.has("stroke");
   if (places != 1)
     node.fail(places == 0 ? "names no place" : "names more than one place",
-              "give exactly one of \"skin\": true, \"outside\": true, \"interface\", \"triangles\" and \"stroke\"");
+              "give exactly one of \"skin\": true, \"outside\": true, \"interface\", \"triangles\", \"fill\" and "
+              "\"stroke\"");
   if (const auto skin = node.find("skin")) {
     result.skin = skin->boolean();
     if (!result.skin) skin->fail("is false, which names no place", "write true, or remove the entry");
@@ -59,6 +60,17 @@ DepthConstraint depth_from(const JsonNode& node) {
   if (const auto triangles = node.find("triangles"))
     for (const JsonNode& triangle : triangles->items(1, "name input triangles, from 0"))
       result.triangles.emplace_back(triangle.whole(0, 0xfffffffeLL, "give the number of an input triangle, from 0"));
+  if (const auto fill = node.find("fill")) {
+    result.fill.emplace();
+    if (fill->is_array())
+      result.fill->near = fill->vector3();
+    else
+      result.fill->triangle = TriangleId(
+          fill->whole(0, 0xfffffffeLL, "give a point [x, y, z] on the surface or the number of an input triangle"));
+    node.optional_number("crease", result.fill->crease, {0, pi, false, "0 to pi", "give radians"});
+  } else if (node.has("crease")) {
+    node.at("crease").fail("belongs to a \"fill\"", "remove it, or give the fill's place");
+  }
   if (const auto stroke = node.find("stroke")) result.stroke = stroke->points(1, "give points [x, y, z] in mm");
   return result;
 }
@@ -212,8 +224,12 @@ Solid solid_from(const JsonNode& node) {
   if (const auto along = node.find("along")) result.along = field_from(*along, "value");
   if (const auto around = node.find("around")) result.around = field_from(*around, "value");
   if (const auto options = node.find("depth_options")) {
-    options->object({"max_centers", "stroke_spacing"});
-    options->optional_whole("max_centers", result.depth_options.max_centers, 10, 20'000, "1500 suits most solids");
+    options->object({"max_centers", "stroke_spacing", "extrema", "persistence"});
+    options->optional_whole("max_centers", result.depth_options.max_centers, 10, 1'000'000,
+                            "leave it out for as many as are worth while");
+    if (const auto extrema = options->find("extrema"))
+      result.depth_options.keep_extrema = extrema->choice({"remove", "keep"}) == 1;
+    options->optional_number("persistence", result.depth_options.persistence, range::fraction);
     options->optional_number("stroke_spacing", result.depth_options.stroke_spacing, range::positive_mm);
   }
   if (const auto orientation = node.find("orientation")) result.orientation = orientation_from(*orientation);

@@ -49,6 +49,7 @@ void transfer(Archive& archive, Item& depth) {
   transfer_list(archive, depth.value);
   transfer_list(archive, depth.gradient);
   transfer(archive, depth.centers);
+  transfer(archive, depth.extrema);
 }
 
 template <class Archive, class Item>

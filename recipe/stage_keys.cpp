@@ -43,12 +43,18 @@ KeyMaker& add(KeyMaker& maker, const std::vector<DepthConstraint>& constraints) 
         .add(one.stroke)
         .add(static_cast<std::uint64_t>(one.triangles.size()));
     for (const TriangleId triangle : one.triangles) maker.add(static_cast<std::uint64_t>(triangle.value));
+    maker.add(one.fill.has_value());
+    if (one.fill)
+      maker.add(one.fill->near).add(static_cast<std::uint64_t>(one.fill->triangle.value)).add(one.fill->crease);
   }
   return maker;
 }
 
 KeyMaker& add(KeyMaker& maker, const DepthOptions& options) {
-  return maker.add(options.max_centers).add(options.stroke_spacing);
+  return maker.add(options.max_centers)
+      .add(options.stroke_spacing)
+      .add(options.keep_extrema)
+      .add(options.persistence);
 }
 
 KeyMaker& add(KeyMaker& maker, const std::vector<AxisStroke>& strokes) {

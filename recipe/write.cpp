@@ -52,6 +52,13 @@ json json_from(const DepthConstraint& constraint) {
     for (const TriangleId t : constraint.triangles) triangles.push_back(t.value);
     result["triangles"] = std::move(triangles);
   }
+  if (constraint.fill) {
+    if (constraint.fill->triangle.exists())
+      result["fill"] = constraint.fill->triangle.value;
+    else
+      result["fill"] = json_from(constraint.fill->near);
+    put(result, "crease", constraint.fill->crease, FaceFill().crease);
+  }
   if (!constraint.stroke.empty()) result["stroke"] = json_from(constraint.stroke);
   result["value"] = constraint.value;
   return result;
@@ -174,6 +181,8 @@ json json_from(const Solid& solid) {
   json depth_options = json::object();
   put(depth_options, "max_centers", solid.depth_options.max_centers, DepthOptions().max_centers);
   put(depth_options, "stroke_spacing", solid.depth_options.stroke_spacing, DepthOptions().stroke_spacing);
+  if (solid.depth_options.keep_extrema) depth_options["extrema"] = "keep";
+  put(depth_options, "persistence", solid.depth_options.persistence, DepthOptions().persistence);
   put_object(result, "depth_options", std::move(depth_options));
   put_list(result, "orientation", solid.orientation);
   put(result, "scale", solid.scale, 0.0);

@@ -1,46 +1,132 @@
 // Depth by thin-plate interpolation in 3D: Takayama, Okabe, Ijiri, Igarashi: Lapped solid textures, SIGGRAPH 2008,
 // §5.2.2 (after Turk, O'Brien 1999).
 //
-// Departure: the paper interpolates all constraints; here centres are thinned, since the skin's vertices crowd far
-// closer than the smooth interpolant needs, and the vertices left out take their prescribed depths afterwards.
+// Departures: the paper interpolates all constraints; here centres of small models are thinned, since the skin's
+// vertices crowd far closer than the smooth interpolant needs, and the vertices left out take their prescribed depths
+// afterwards. And extrema that no constraint asks for, a failure that the paper names (§6), are taken away unless
+// they are to be kept.
 #include "volume/field/depth.h"
 
 #include "volume/base/error.h"
 #include "volume/base/parallel.h"
+#include "volume/field/depth_extrema.h"
 #include "volume/field/depth_places.h"
 #include "volume/field/farthest_points.h"
+#include "volume/field/monotone_depth.h"
 #include "volume/field/radial_basis.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace pith {
 namespace {
 
-/// Points and depths of at most `most` places: stroke samples first, then vertices of the region's boundary.
-struct Thinned {
+/// From so many places on all are centres.
+constexpr std::size_t all_from = 4000;
+constexpr std::size_t few_centers = 500;
+/// Places closer to an earlier one than this fraction of the diagonal are left out when all are centres.
+constexpr double least_gap = 1e-4;
+
+struct Places {
   std::vector<Vec3d> point;
   std::vector<double> value;
+
+  void add(const Vec3d& p, double v) {
+    point.push_back(p);
+    value.push_back(v);
+  }
 };
 
-Thinned thinned(const TetMesh& mesh, const DepthPlaces& places, std::size_t most) {
-  Thinned candidates;
-  for (const std::uint32_t i : farthest_points(places.sample, most / 2)) {
-    candidates.point.push_back(places.sample[i]);
-    candidates.value.push_back(places.sample_value[i]);
+/// Stroke samples, then vertices with a prescribed depth, but for those too close to an earlier place.
+Places all_of(const TetMesh& mesh, const DepthPlaces& places) {
+  Places all;
+  for (std::size_t i = 0; i < places.sample.size(); ++i) all.add(places.sample[i], places.sample_value[i]);
+  for (const VertexId v : all_ids<VertexId>(mesh.vertex_count()))
+    if (!std::isnan(places.prescribed[v])) all.add(mesh.position[v], places.prescribed[v]);
+  Box box;
+  for (const Vec3d& p : all.point) box.add(p);
+  const double gap = least_gap * box.diagonal();
+  std::vector<std::uint32_t> order(all.point.size()), rank(order.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const Vec3d direction = Vec3d(0.5377, 0.6912, 0.4829).normalized(); // across no face or row that is likely
+  std::vector<double> along;
+  for (const Vec3d& p : all.point) along.push_back(direction.dot(p));
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return std::pair(along[a], a) < std::pair(along[b], b); });
+  for (std::uint32_t r = 0; r < order.size(); ++r) rank[order[r]] = r;
+  Places kept;
+  std::vector<std::uint8_t> stays(order.size(), 0);
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    bool free = true;
+    const auto near = [&](std::uint32_t j) {
+      return j < i && stays[j] && (all.point[i] - all.point[j]).squaredNorm() < gap * gap;
+    };
+    for (std::uint32_t r = rank[i]; free && r-- > 0 && along[i] - along[order[r]] < gap;) free = !near(order[r]);
+    for (std::uint32_t r = rank[i] + 1; free && r < order.size() && along[order[r]] - along[i] < gap; ++r)
+      free = !near(order[r]);
+    stays[i] = free;
+    if (free) kept.add(all.point[i], all.value[i]);
   }
+  return kept;
+}
+
+/// At most `most` places: stroke samples first, then vertices.
+Places thinned(const TetMesh& mesh, const DepthPlaces& places, std::size_t most) {
+  Places candidates, result;
+  for (const std::uint32_t i : farthest_points(places.sample, most / 2))
+    candidates.add(places.sample[i], places.sample_value[i]);
   const std::size_t samples = candidates.point.size();
   for (const VertexId v : all_ids<VertexId>(mesh.vertex_count()))
-    if (!std::isnan(places.prescribed[v])) {
-      candidates.point.push_back(mesh.position[v]);
-      candidates.value.push_back(places.prescribed[v]);
-    }
-  Thinned result;
-  for (const std::uint32_t i : farthest_points(candidates.point, most, samples)) {
-    result.point.push_back(candidates.point[i]);
-    result.value.push_back(candidates.value[i]);
-  }
+    if (!std::isnan(places.prescribed[v])) candidates.add(mesh.position[v], places.prescribed[v]);
+  for (const std::uint32_t i : farthest_points(candidates.point, most, samples))
+    result.add(candidates.point[i], candidates.value[i]);
   return result;
+}
+
+RadialBasis basis_of(const TetMesh& mesh, const DepthPlaces& places, std::size_t most) {
+  if (most > 0) {
+    const Places some = thinned(mesh, places, most);
+    return RadialBasis::fit(some.point, some.value);
+  }
+  const Places all = all_of(mesh, places);
+  if (all.point.size() < all_from) return basis_of(mesh, places, few_centers);
+  return RadialBasis::fit(all.point, all.value, {.accuracy = 3e-7});
+}
+
+/// The gradient of the linear function through differences at a tet's corners.
+Vec3d linear_gradient(const TetMesh& mesh, TetId t, const std::array<double, 4>& at_corner) {
+  const auto& corner = mesh.corner[t];
+  Mat3d edges;
+  Vec3d rise;
+  for (int k = 0; k < 3; ++k) {
+    edges.row(k) = (mesh.position[corner[k + 1]] - mesh.position[corner[0]]).transpose();
+    rise[k] = at_corner[k + 1] - at_corner[0];
+  }
+  const Vec3d a = edges.row(0), b = edges.row(1), c = edges.row(2);
+  const double volume = a.dot(b.cross(c));
+  if (volume == 0) return Vec3d::Zero();
+  return (rise[0] * b.cross(c) + rise[1] * c.cross(a) + rise[2] * a.cross(b)) / volume;
+}
+
+/// Takes away what extrema_of finds.
+void remove_extrema(const TetMesh& mesh, std::int32_t region, const PerVertex<std::uint8_t>& held,
+                    const RadialBasis& basis, DepthField& field) {
+  const PerVertex<float> changed = monotone_depth(mesh, region, field.value, held);
+  PerVertex<std::uint8_t> moved(mesh.vertex_count(), 0);
+  for (std::size_t v = 0; v < moved.size(); ++v)
+    moved[VertexId(v)] = changed[VertexId(v)] != field.value[VertexId(v)];
+  parallel_for(mesh.tet_count(), 256, [&](std::size_t i) {
+    const TetId t(i);
+    const auto& corner = mesh.corner[t];
+    if (mesh.region[t] != region ||
+        std::none_of(corner.begin(), corner.end(), [&](VertexId v) { return moved[v] != 0; }))
+      return;
+    std::array<double, 4> change;
+    for (int k = 0; k < 4; ++k) change[k] = changed[corner[k]] - basis.value(mesh.position[corner[k]]);
+    field.gradient[t] += linear_gradient(mesh, t, change);
+  });
+  field.value = changed;
 }
 
 } // namespace
@@ -48,14 +134,16 @@ Thinned thinned(const TetMesh& mesh, const DepthPlaces& places, std::size_t most
 DepthField depth_field(const TetMesh& mesh, const Boundary& boundary, std::int32_t region,
                        const std::vector<DepthConstraint>& constraints, const std::string& where,
                        const DepthOptions& options) {
-  if (options.max_centers < 8)
-    throw InvalidInput(where, "max_centers is " + std::to_string(options.max_centers), "allow at least 8");
+  if (options.max_centers != 0 && options.max_centers < 8)
+    throw InvalidInput(where, "max_centers is " + std::to_string(options.max_centers),
+                       "allow at least 8, or 0 for as many as are worth while");
+  if (!(options.persistence >= 0))
+    throw InvalidInput(where, "persistence is " + std::to_string(options.persistence), "give a depth of 0 or more");
   if (!(options.stroke_spacing >= 0) || !std::isfinite(options.stroke_spacing))
     throw InvalidInput(where, "stroke_spacing is " + std::to_string(options.stroke_spacing),
                        "give millimetres, or 0 for a fortieth of the stroke");
   const DepthPlaces places = depth_places(mesh, boundary, region, constraints, where, options);
-  const Thinned centers = thinned(mesh, places, static_cast<std::size_t>(options.max_centers));
-  const RadialBasis basis = RadialBasis::fit(centers.point, centers.value);
+  const RadialBasis basis = basis_of(mesh, places, static_cast<std::size_t>(options.max_centers));
 
   DepthField field;
   field.centers = basis.center_count();
@@ -76,6 +164,9 @@ DepthField depth_field(const TetMesh& mesh, const Boundary& boundary, std::int32
     const TetId t(i);
     if (mesh.region[t] == region) field.gradient[t] = basis.gradient(barycenter(mesh, t));
   });
+  const PerVertex<std::uint8_t> held = held_vertices(mesh, region, places);
+  field.extrema = extrema_of(mesh, region, field.value, held, options.persistence).size();
+  if (field.extrema > 0 && !options.keep_extrema) remove_extrema(mesh, region, held, basis, field);
   return field;
 }
 

@@ -3,6 +3,7 @@
 
 #include "volume/base/error.h"
 #include "volume/base/parallel.h"
+#include "volume/field/face_fill.h"
 #include "volume/mesh/facet_tree.h"
 
 #include <Eigen/Geometry>
@@ -132,6 +133,44 @@ struct Gathering {
           "name triangles of the surface around this region");
   }
 
+  void hold_fill(const FaceFill& fill, double value, const std::string& name) {
+    if (!(fill.crease >= 0 && fill.crease <= M_PI))
+      throw InvalidInput(name, "the crease is " + text_of(fill.crease), "give radians from 0 to pi");
+    std::vector<FacetId> seeds;
+    if (fill.triangle.exists()) {
+      if (boundary.input.empty())
+        throw InvalidInput(name, "the mesh does not know the input triangles of its facets",
+                           "start the fill at a point");
+      for (const FacetId f : all_ids<FacetId>(boundary.facet_count()))
+        if (mesh.region[boundary.tet[f]] == region && boundary.input[f] == fill.triangle) seeds.push_back(f);
+      if (seeds.empty())
+        throw InvalidInput(name,
+                           "triangle " + std::to_string(fill.triangle.value) + " bounds no part of region " +
+                               std::to_string(region),
+                           "name a triangle of the surface around this region");
+    } else {
+      double least = std::numeric_limits<double>::infinity();
+      FacetId nearest;
+      for (const FacetId f : all_ids<FacetId>(boundary.facet_count())) {
+        if (mesh.region[boundary.tet[f]] != region) continue;
+        std::array<Vec3d, 3> corner;
+        for (int k = 0; k < 3; ++k) corner[k] = mesh.position[boundary.corner[f][k]];
+        const double distance = closest_point(corner, fill.near).squared_distance;
+        if (distance < least) {
+          least = distance;
+          nearest = f;
+        }
+      }
+      if (!(std::sqrt(least) <= stroke_margin * diagonal))
+        throw InvalidInput(name,
+                           "the fill starts at " + text_of(fill.near) + ", " + text_of(std::sqrt(least)) +
+                               " mm from the boundary of region " + std::to_string(region),
+                           "give a point on the surface, in the mesh's millimetres");
+      seeds.push_back(nearest);
+    }
+    for (const FacetId f : facets_up_to_creases(mesh, boundary, region, seeds, fill.crease)) hold_facet(f, value);
+  }
+
   void hold_stroke(std::span<const Vec3d> stroke, double value, double spacing, const std::string& name) {
     for (const Vec3d& p : stroke)
       if (!p.allFinite()) throw InvalidInput(name, "a stroke point is not finite", "give finite coordinates");
@@ -233,13 +272,14 @@ DepthPlaces depth_places(const TetMesh& mesh, const Boundary& boundary, std::int
       throw InvalidInput(name, "depth " + text_of(constraint.value) + " lies outside [0, 1]",
                          "use 0 for the outermost and 1 for the innermost part");
     if (!constraint.skin && !constraint.outside && !constraint.interface && constraint.triangles.empty() &&
-        constraint.stroke.empty())
+        constraint.stroke.empty() && !constraint.fill)
       throw InvalidInput(name, "the constraint names no place",
-                         "give it the skin, the outside, an interface, triangles or a stroke");
+                         "give it the skin, the outside, an interface, triangles, a fill or a stroke");
     if (constraint.skin) gathering.hold_skin(constraint.value);
     if (constraint.outside) gathering.hold_part({}, constraint.value, name);
     if (constraint.interface) gathering.hold_part(constraint.interface, constraint.value, name);
     if (!constraint.triangles.empty()) gathering.hold_triangles(constraint.triangles, constraint.value, name);
+    if (constraint.fill) gathering.hold_fill(*constraint.fill, constraint.value, name);
     if (!constraint.stroke.empty())
       gathering.hold_stroke(constraint.stroke, constraint.value, options.stroke_spacing, name);
   }
@@ -254,6 +294,29 @@ DepthPlaces depth_places(const TetMesh& mesh, const Boundary& boundary, std::int
   check_strokes(gathering, constraints);
   hold_vertices_on_strokes(gathering, constraints);
   return std::move(gathering.places);
+}
+
+PerVertex<std::uint8_t> held_vertices(const TetMesh& mesh, std::int32_t region, const DepthPlaces& places) {
+  PerVertex<std::uint8_t> held(mesh.vertex_count(), 0);
+  std::vector<std::uint8_t> used(mesh.vertex_count(), 0);
+  for (const TetId t : all_ids<TetId>(mesh.tet_count()))
+    if (mesh.region[t] == region)
+      for (const VertexId v : mesh.corner[t]) used[v] = 1;
+  for (const VertexId v : all_ids<VertexId>(mesh.vertex_count())) held[v] = !std::isnan(places.prescribed[v]);
+  std::vector<std::uint32_t> nearest(places.sample.size());
+  parallel_for(places.sample.size(), 4, [&](std::size_t s) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const VertexId v : all_ids<VertexId>(mesh.vertex_count())) {
+      if (!used[v]) continue;
+      const double distance = (mesh.position[v] - places.sample[s]).squaredNorm();
+      if (distance < least) {
+        least = distance;
+        nearest[s] = v;
+      }
+    }
+  });
+  for (const std::uint32_t v : nearest) held[VertexId(v)] = 1;
+  return held;
 }
 
 } // namespace pith

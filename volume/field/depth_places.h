@@ -17,4 +17,7 @@ DepthPlaces depth_places(const TetMesh& mesh, const Boundary& boundary, std::int
                          const std::vector<DepthConstraint>& constraints, const std::string& where,
                          const DepthOptions& options);
 
+/// 1 at vertices with a prescribed depth and at the vertex of the region nearest to each sample.
+PerVertex<std::uint8_t> held_vertices(const TetMesh& mesh, std::int32_t region, const DepthPlaces& places);
+
 } // namespace pith
