@@ -199,6 +199,47 @@ TEST(Depth, KeepsToItsRegion) {
   }
 }
 
+// The faces of a box end at its edges; a bar of wedges with flat creases is one face.
+TEST(Depth, FillsFacesUpToCreases) {
+  TetMesh mesh = tet_grid(6, 5, 4, 2);
+  Boundary boundary = boundary_of(mesh);
+  for (const FacetId f : all_ids<FacetId>(boundary.facet_count())) boundary.input.push_back(TriangleId(f.value));
+  const auto fill = [](const Vec3d& at, double crease, double value) {
+    DepthConstraint constraint{.value = value, .skin = false, .triangles = {}, .stroke = {}};
+    constraint.fill = FaceFill{.near = at, .triangle = {}, .crease = crease};
+    return constraint;
+  };
+  const DepthField field =
+      depth_field(mesh, boundary, 0, {fill({0, 5, 4}, 0.6, 0.25), fill({12, 5, 4}, 0.6, 0.75)}, "depth");
+  for (const VertexId v : all_ids<VertexId>(mesh.vertex_count()))
+    EXPECT_NEAR(field.value[v], 0.25 + mesh.position[v].x() / 24, 1e-6);
+  // The same from triangles, and by hand.
+  DepthConstraint from_triangle = fill({}, 0.6, 0.25);
+  for (const FacetId f : all_ids<FacetId>(boundary.facet_count()))
+    if (std::all_of(boundary.corner[f].begin(), boundary.corner[f].end(),
+                    [&](VertexId v) { return mesh.position[v].x() == 0; }))
+      from_triangle.fill->triangle = boundary.input[f];
+  const DepthField again = depth_field(mesh, boundary, 0, {from_triangle, fill({12, 5, 4}, 0.6, 0.75)}, "depth");
+  EXPECT_EQ(again.value, field.value);
+  // Wide enough, the fill runs around the box's edges and meets the other one.
+  EXPECT_THROW(depth_field(mesh, boundary, 0, {fill({0, 5, 4}, 1.6, 0.25), fill({12, 5, 4}, 0.6, 0.75)}, "depth"),
+               InvalidInput);
+  EXPECT_THROW(depth_field(mesh, boundary, 0, {fill({6, 5, 4}, 0.6, 0.25), fill({12, 5, 4}, 0.6, 0.75)}, "depth"),
+               InvalidInput); // starts inside
+}
+
+// All places as centres, by the fast method: it agrees with thinned centres where those are good.
+TEST(Depth, AllConstraintsAgreeWithSome) {
+  const Scene scene(tet_ball(28, 10));
+  const std::vector<DepthConstraint> constraints = {skin_is_zero, stroke_of({{0, 0, -4}, {0, 0, 4}}, 1)};
+  const DepthField all = scene.depth(constraints, {.max_centers = 100'000}),
+                   some = scene.depth(constraints, {.max_centers = 1000});
+  EXPECT_GT(all.centers, 4000u);
+  EXPECT_LE(some.centers, 1000u);
+  for (const VertexId v : all_ids<VertexId>(scene.mesh.vertex_count()))
+    EXPECT_NEAR(all.value[v], some.value[v], 0.004);
+}
+
 TEST(Depth, RefusesContradictionsAndNamesThePlace) {
   const Scene scene(tet_ball(6, 10));
   const DepthConstraint axis = stroke_of({{0, 0, -4}, {0, 0, 4}}, 1);

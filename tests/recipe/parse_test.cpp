@@ -187,6 +187,9 @@ INSTANTIATE_TEST_SUITE_P(Recipe, RecipeMistakes, ::testing::ValuesIn(std::vector
   {"DepthTooHigh", "\"value\": 1}", "\"value\": 1.5}", "kiwi.json: /solids/0/depth/1/value: is 1.5, must be 0 to 1"},
   {"SameDepth", "\"value\": 1}", "\"value\": 0}", "kiwi.json: /solids/0/depth: gives every place the same depth"},
   {"TwoPlaces", "\"skin\": true,", "\"skin\": true, \"triangles\": [1],", "kiwi.json: /solids/0/depth/0: names more than one place"},
+  {"CreaseAlone", "\"skin\": true,", "\"skin\": true, \"crease\": 1,", "kiwi.json: /solids/0/depth/0/crease: belongs to a \"fill\""},
+  {"CreaseTooWide", "\"skin\": true,", "\"fill\": [0, 0, 1], \"crease\": 4,", "kiwi.json: /solids/0/depth/0/crease: is 4, must be 0 to pi"},
+  {"FillOfText", "\"skin\": true,", "\"fill\": \"top\",", "kiwi.json: /solids/0/depth/0/fill: is \"top\", must be"},
   {"NoPlace", "\"skin\": true,", "", "kiwi.json: /solids/0/depth/0: names no place"},
   {"SkinTwice", "{\"skin\": true, \"value\": 0}", "{\"skin\": true, \"value\": 0}, {\"skin\": true, \"value\": 0.5}", "kiwi.json: /solids/0/depth: gives the skin two depths"},
   {"TriangleTwice", "{\"skin\": true, \"value\": 0}", "{\"triangles\": [4, 5], \"value\": 0}, {\"triangles\": [5], \"value\": 0.5}", "kiwi.json: /solids/0/depth: gives input triangle 5 two depths"},
@@ -304,6 +307,32 @@ TEST(Recipe, KeysThatATypeHasNoUseForAreRefused) {
   refused(R"("type": "2-c", "along": [{"skin": true, "value": 1}, {"stroke": [[0, 0, 0]], "value": 1}], "depth": )" +
               std::string(two_depths),
           "kiwi.json: /solids/0/along: gives every place the same value");
+}
+
+TEST(Recipe, FillsUpToCreasesAreReadAndWritten) {
+  const std::string text = kiwi("{\"skin\": true, \"value\": 0}", "{\"fill\": [1, 2, 3], \"crease\": 0.25, \"value\": 0}, "
+                                                                "{\"fill\": 12, \"value\": 0.5}");
+  const std::string more = [&] {
+    std::string t = text;
+    const std::string key = "\"mask\":";
+    return t.replace(t.find(key), key.size(),
+                     "\"depth_options\": {\"extrema\": \"keep\", \"persistence\": 0.05, \"max_centers\": 300}, " + key);
+  }();
+  const Recipe recipe = parse_recipe(more, "kiwi.json");
+  const Recipe again = parse_recipe(recipe_text(recipe), "kiwi.json");
+  for (const Recipe* one : {&recipe, &again}) {
+    const Solid& solid = one->solids[0];
+    ASSERT_EQ(solid.depth.size(), 3u);
+    ASSERT_TRUE(solid.depth[0].fill && solid.depth[1].fill);
+    EXPECT_EQ(solid.depth[0].fill->near, Vec3d(1, 2, 3));
+    EXPECT_EQ(solid.depth[0].fill->crease, 0.25);
+    EXPECT_FALSE(solid.depth[0].fill->triangle.exists());
+    EXPECT_EQ(solid.depth[1].fill->triangle, TriangleId(12));
+    EXPECT_EQ(solid.depth[1].fill->crease, FaceFill().crease);
+    EXPECT_TRUE(solid.depth_options.keep_extrema);
+    EXPECT_EQ(solid.depth_options.persistence, 0.05);
+    EXPECT_EQ(solid.depth_options.max_centers, 300);
+  }
 }
 
 TEST(Recipe, BareStrokesAndCutsAreRead) {

@@ -23,7 +23,7 @@ namespace pith {
 namespace {
 
 /// From so many places on all are centres.
-constexpr std::size_t all_from = 4000;
+constexpr std::size_t all_from = 20'000;
 constexpr std::size_t few_centers = 500;
 /// Places closer to an earlier one than this fraction of the diagonal are left out when all are centres.
 constexpr double least_gap = 1e-4;
@@ -85,13 +85,11 @@ Places thinned(const TetMesh& mesh, const DepthPlaces& places, std::size_t most)
 }
 
 RadialBasis basis_of(const TetMesh& mesh, const DepthPlaces& places, std::size_t most) {
-  if (most > 0) {
-    const Places some = thinned(mesh, places, most);
-    return RadialBasis::fit(some.point, some.value);
-  }
-  const Places all = all_of(mesh, places);
-  if (all.point.size() < all_from) return basis_of(mesh, places, few_centers);
-  return RadialBasis::fit(all.point, all.value, {.accuracy = 3e-7});
+  std::size_t count = places.sample.size();
+  for (const float prescribed : places.prescribed) count += !std::isnan(prescribed);
+  if (most == 0) most = count < all_from ? few_centers : count;
+  const Places centers = most < count ? thinned(mesh, places, most) : all_of(mesh, places);
+  return RadialBasis::fit(centers.point, centers.value, {.accuracy = 3e-7});
 }
 
 /// The gradient of the linear function through differences at a tet's corners.

@@ -30,7 +30,7 @@ struct DepthConstraint {
 
 struct DepthOptions {
   /// Centres of the radial basis. Strokes take at most half of them; the densest constraints are thinned to the rest
-  /// (farthest points). More cost n³ once and n per vertex and tet. 0: 500 as long as there are fewer than 4,000
+  /// (farthest points). More cost n³ once and n per vertex and tet. 0: 500 as long as there are fewer than 20,000
   /// places; from there on all of them, at near linear cost (radial_basis.h).
   int max_centers = 0;
   double stroke_spacing = 0; ///< mm between samples of a stroke; 0: its length / 40

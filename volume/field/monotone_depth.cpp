@@ -20,6 +20,8 @@ namespace {
 
 /// Along the edges that the inequalities use, the result rises by at least this part of what the harmonic field does.
 constexpr double least_rise = 0.3;
+/// Smaller rises of the harmonic field are its solver's noise.
+constexpr double least_guide_rise = 1e-7;
 constexpr int rounds = 6, smoothing_steps = 12;
 
 struct Part {
@@ -131,28 +133,34 @@ struct Inequality {
 };
 
 /// One edge up and one down at every free vertex: among those along which the harmonic field rises and falls, the one
-/// along which `value` does so most.
+/// along which `value` does so most. A vertex that lacks one (the harmonic field is level there: nothing beyond it is
+/// constrained) is pinned to the harmonic field.
 std::vector<Inequality> inequalities_of(const Part& part, const std::vector<double>& guide,
-                                        const std::vector<double>& value) {
+                                        const std::vector<double>& value, std::vector<std::uint8_t>& pinned) {
   std::vector<Inequality> result;
   for (std::uint32_t i = 0; i < part.vertex.size(); ++i) {
     if (part.fixed[i]) continue;
     std::uint32_t up = i, down = i;
     for (const VertexId j : part.neighbors[VertexId(i)]) {
-      if (guide[j] > guide[i] && (up == i || value[j] > value[up])) up = j;
-      if (guide[j] < guide[i] && (down == i || value[j] < value[down])) down = j;
+      if (guide[j] > guide[i] + least_guide_rise && (up == i || value[j] > value[up])) up = j;
+      if (guide[j] < guide[i] - least_guide_rise && (down == i || value[j] < value[down])) down = j;
     }
-    if (up != i) result.push_back({i, up, least_rise * (guide[up] - guide[i])});
-    if (down != i) result.push_back({down, i, least_rise * (guide[i] - guide[down])});
+    if (up == i || down == i) {
+      pinned[i] = 1;
+      continue;
+    }
+    result.push_back({i, up, least_rise * (guide[up] - guide[i])});
+    result.push_back({down, i, least_rise * (guide[i] - guide[down])});
   }
   return result;
 }
 
 class Sweeps {
 public:
-  Sweeps(const Part& part, const std::vector<double>& guide, std::vector<Inequality> inequalities,
-         const std::vector<double>& fixed_value)
-      : part_(part), upward_(std::move(inequalities)), downward_(upward_) {
+  /// `pinned` vertices have their value in the guide.
+  Sweeps(const std::vector<std::uint8_t>& pinned, const std::vector<double>& guide,
+         std::vector<Inequality> inequalities)
+      : pinned_(pinned), upward_(std::move(inequalities)), downward_(upward_) {
     std::sort(upward_.begin(), upward_.end(), [&](const Inequality& a, const Inequality& b) {
       return std::tuple(guide[a.high], a.high, a.low) < std::tuple(guide[b.high], b.high, b.low);
     });
@@ -163,7 +171,7 @@ public:
     least_.assign(guide.size(), 0.0);
     most_.assign(guide.size(), 1.0);
     for (std::size_t i = 0; i < guide.size(); ++i)
-      if (part.fixed[i]) least_[i] = most_[i] = fixed_value[i];
+      if (pinned[i]) least_[i] = most_[i] = guide[i];
     raise(least_);
     lower(most_);
   }
@@ -181,24 +189,24 @@ public:
 private:
   void raise(std::vector<double>& value) const {
     for (const Inequality& q : upward_)
-      if (!part_.fixed[q.high]) value[q.high] = std::max(value[q.high], value[q.low] + q.rise);
+      if (!pinned_[q.high]) value[q.high] = std::max(value[q.high], value[q.low] + q.rise);
   }
   void lower(std::vector<double>& value) const {
     for (const Inequality& q : downward_)
-      if (!part_.fixed[q.low]) value[q.low] = std::min(value[q.low], value[q.high] - q.rise);
+      if (!pinned_[q.low]) value[q.low] = std::min(value[q.low], value[q.high] - q.rise);
   }
 
-  const Part& part_;
+  const std::vector<std::uint8_t>& pinned_;
   std::vector<Inequality> upward_, downward_; ///< in the order of their higher, and of their lower ends
   std::vector<double> least_, most_;
 };
 
-/// Means with the neighbours, a few times; fixed vertices stay.
-void smooth(const Part& part, std::vector<double>& value) {
+/// Means with the neighbours, a few times; pinned vertices stay.
+void smooth(const Part& part, const std::vector<std::uint8_t>& pinned, std::vector<double>& value) {
   for (int step = 0; step < smoothing_steps; ++step) {
     std::vector<double> next = value;
     parallel_for(value.size(), 1024, [&](std::size_t i) {
-      if (part.fixed[i]) return;
+      if (pinned[i]) return;
       double sum = 0;
       for (const VertexId j : part.neighbors[VertexId(i)]) sum += value[j];
       const std::size_t count = part.neighbors[VertexId(i)].size();
@@ -216,12 +224,14 @@ PerVertex<float> monotone_depth(const TetMesh& mesh, std::int32_t region, const 
   std::vector<double> given(part.vertex.size());
   for (std::size_t i = 0; i < given.size(); ++i) given[i] = depth[part.vertex[i]];
   const std::vector<double> guide = harmonic(mesh, part, given);
-  const Sweeps sweeps(part, guide, inequalities_of(part, guide, given), given);
+  std::vector<std::uint8_t> pinned = part.fixed;
+  std::vector<Inequality> inequalities = inequalities_of(part, guide, given, pinned);
+  const Sweeps sweeps(pinned, guide, std::move(inequalities));
   std::vector<double> value = sweeps.apply(given);
   for (int round = 0; round < rounds; ++round) {
     std::vector<double> change(value.size());
     for (std::size_t i = 0; i < value.size(); ++i) change[i] = value[i] - given[i];
-    smooth(part, change);
+    smooth(part, pinned, change);
     for (std::size_t i = 0; i < value.size(); ++i) change[i] += given[i];
     value = sweeps.apply(std::move(change));
   }
