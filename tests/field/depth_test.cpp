@@ -214,7 +214,7 @@ TEST(Depth, FillsFacesUpToCreases) {
   for (const VertexId v : all_ids<VertexId>(mesh.vertex_count()))
     EXPECT_NEAR(field.value[v], 0.25 + mesh.position[v].x() / 24, 1e-6);
   // The same from triangles, and by hand.
-  DepthConstraint from_triangle = fill({}, 0.6, 0.25);
+  DepthConstraint from_triangle = fill(Vec3d::Zero(), 0.6, 0.25);
   for (const FacetId f : all_ids<FacetId>(boundary.facet_count()))
     if (std::all_of(boundary.corner[f].begin(), boundary.corner[f].end(),
                     [&](VertexId v) { return mesh.position[v].x() == 0; }))
