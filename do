@@ -11,6 +11,8 @@ usage: ./do VERB [options]
   build [PRESET]                 configure and build; the program is then build/release/pith
                                  (presets: release, debug, asan, tsan; default release)
   demo                           build, then make, cut and render the kiwi; pictures and model land in build/demo
+  gallery [NAME...]              build, then make the models of docs/gallery.md (or those named) and their pictures in
+                                 docs/gallery: whole, cut across and cut along
   test [--oracles] [--slow] [--no-sanitizers]
                                  build and pass the tests, the fast ones under sanitizers too; also those that compare
                                  with other programs, and those that take long
@@ -19,7 +21,7 @@ usage: ./do VERB [options]
                                  write FILE
   format [--check]               clang-format over pith's sources; --check only says what would change
 
-deps runs by itself before build, demo, test and bench. PITH_SHARED_DATA names a folder of real meshes, images and
+deps runs by itself before build, demo, gallery, test and bench. PITH_SHARED_DATA names a folder of real meshes, images and
 volumes that some tests and benchmarks read; without it they are skipped, saying so.
 END
 }
@@ -152,6 +154,42 @@ demo() {
   echo "              $PWD/$out/kiwi-halves.png   both halves"
 }
 
+# The models of the gallery: name, a plane across, a plane along.
+gallery_models=(
+  "kiwi        0,0,1,0     0,1,0,0"
+  "carrot      0,0,1,20    0,1,0,-1"
+  "tree        0,0,1,40    0,1,0,0"
+  "watermelon  0,0,1,0     0,1,0,0"
+  "tube        0,0,1,0     0,1,0,1"
+  "strata      1,0,0,0     0,1,0,0"
+  "cake        1,0,0,10    0,1,0,0"
+  "mineral     0,0,1,0     0,1,0,0"
+  "ripening    0,0,1,0     1,0,0,0"
+  "brick       0,0,1,10    1,0,0,15"
+  "orange      0,0,1,0     0,1,0,0"
+  "banana      1,0,0,30    0,0,1,15.2"
+  "bell_pepper 0,1,0,42    0,0,1,0"
+)
+
+gallery() {
+  deps
+  configured release
+  built release pith
+  local pith=build/release/pith out=build/gallery entry name across along picture
+  mkdir -p "$out" docs/gallery
+  for entry in "${gallery_models[@]}"; do
+    read -r name across along <<<"$entry"
+    [[ $# -eq 0 || " $* " == *" $name "* ]] || continue
+    step "$name"
+    "$pith" make "data/recipes/$name.json" -o "$out/$name.pith"
+    "$pith" cut "$out/$name.pith" --plane "$across" --keep left -o "$out/$name-across.pith"
+    "$pith" cut "$out/$name.pith" --plane "$along" --keep left -o "$out/$name-along.pith"
+    for picture in "$name" "$name-across" "$name-along"; do
+      "$pith" render "$out/$picture.pith" -o "docs/gallery/$picture.jpg" --size 400x320 --spp "${PITH_GALLERY_SPP:-64}"
+    done
+  done
+}
+
 # The test programs that run under the sanitizers: quick ones over the code that handles memory and files.
 sanitized=(test_base test_field)
 
@@ -212,7 +250,7 @@ format() {
 verb=${1:-help}
 [[ $# -gt 0 ]] && shift
 case $verb in
-deps | build | demo | bench | format) "$verb" "$@" ;;
+deps | build | demo | gallery | bench | format) "$verb" "$@" ;;
 test) run_tests "$@" ;;
 help | -h | --help) usage ;;
 *)

@@ -1,7 +1,6 @@
 // pith shape NAME -o FILE: writes a surface that pith makes itself.
 #include "cli/command.h"
-#include "volume/base/error.h"
-#include "volume/exemplar/kiwi_surface.h"
+#include "volume/exemplar/shapes.h"
 #include "volume/io/mesh_io.h"
 
 #include <chrono>
@@ -19,9 +18,7 @@ struct ShapeOptions {
 void run(const ShapeOptions& options, const Session& session) {
   const auto start = std::chrono::steady_clock::now();
   check_output(options.output, {"obj", "off", "ply", "stl"});
-  if (options.name != "kiwi")
-    throw InvalidInput("shape \"" + options.name + "\"", "no generator makes it", "known names: kiwi");
-  const TriMesh mesh = kiwi_surface(options.triangles);
+  const TriMesh mesh = named_shape(options.name, options.triangles);
   session.stop_if_asked();
   write_tri_mesh(options.output, mesh);
   session.say(fmt::format("{}: {} triangles", options.output.string(), mesh.triangle_count()));
@@ -36,8 +33,10 @@ void run(const ShapeOptions& options, const Session& session) {
 
 Verb shape_verb(CLI::App& program) {
   auto options = std::make_shared<ShapeOptions>();
-  CLI::App* app = program.add_subcommand("shape", "make a closed surface: kiwi");
-  app->add_option("name", options->name, "kiwi")->required();
+  std::string names;
+  for (const std::string& name : shape_names()) names += (names.empty() ? "" : ", ") + name;
+  CLI::App* app = program.add_subcommand("shape", "make a closed surface: " + names);
+  app->add_option("name", options->name, names)->required();
   app->add_option("-o,--output", options->output, "FILE.obj, .off, .ply or .stl")->required();
   app->add_option("--triangles", options->triangles, "about how many")->check(CLI::Range(100, 2'000'000));
   return {app, [options](const Session& session) { run(*options, session); }};

@@ -7,6 +7,7 @@
 #include "volume/base/error.h"
 #include "volume/cut/divide.h"
 #include "volume/exemplar/procedural.h"
+#include "volume/exemplar/shapes.h"
 #include "volume/io/atomic_file.h"
 #include "volume/io/exemplar_io.h"
 #include "volume/io/mesh_io.h"
@@ -166,10 +167,14 @@ private:
   std::string solid_path(std::size_t i) const { return where("/solids/" + std::to_string(i)); }
 
   void make_keys() {
-    surface_path_ = input_path(folder_, recipe_.surface.file, where("/surface/file"));
-    std::string extension = surface_path_.extension().string();
-    surface_key_ =
-        run_.key("surface").add(key_of(file_content(surface_path_))).add(extension).add(recipe_.surface.scale).key();
+    KeyMaker surface = run_.key("surface").add(recipe_.surface.scale);
+    if (recipe_.surface.shape.empty()) {
+      surface_path_ = input_path(folder_, recipe_.surface.file, where("/surface/file"));
+      surface.add(key_of(file_content(surface_path_))).add(surface_path_.extension().string());
+    } else {
+      surface.add(recipe_.surface.shape).add(recipe_.surface.triangles);
+    }
+    surface_key_ = surface.key();
     run_.announce("surface", surface_key_);
     KeyMaker tets = run_.key("tets").add(surface_key_);
     Key meshed = add(tets, recipe_.tetrahedralize).key();
@@ -324,10 +329,14 @@ private:
   std::shared_ptr<const TetrahedralizeResult> tets() {
     return run_.result<TetrahedralizeResult>("tets", meshed_keys_[0], true, [&](const Progress& progress) {
       const auto surface = run_.result<TriMesh>("surface", surface_key_, false, [&](const Progress&) {
-        return read_tri_mesh(surface_path_, recipe_.surface.scale);
+        if (recipe_.surface.shape.empty()) return read_tri_mesh(surface_path_, recipe_.surface.scale);
+        TriMesh shape = named_shape(recipe_.surface.shape, recipe_.surface.triangles);
+        for (Vec3d& position : shape.position) position *= recipe_.surface.scale;
+        return shape;
       });
-      TetrahedralizeResult result =
-          tetrahedralize(*surface, surface_path_.filename().string(), recipe_.tetrahedralize, progress);
+      TetrahedralizeResult result = tetrahedralize(
+          *surface, recipe_.surface.shape.empty() ? surface_path_.filename().string() : recipe_.surface.shape,
+          recipe_.tetrahedralize, progress);
       result.surface = {};
       return result;
     });

@@ -1,6 +1,8 @@
 // Recipe: cuts, moves and views.
 #include "recipe/parse_steps.h"
 
+#include "volume/exemplar/shapes.h"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 
@@ -61,9 +63,23 @@ LevelSetShape shape_from(const JsonNode& node) {
 } // namespace
 
 SurfaceSource surface_from(const JsonNode& node) {
-  node.object({"file", "scale"});
   SurfaceSource result;
-  result.file = node.at("file").text();
+  if (const auto shape = node.find("shape")) {
+    node.object({"shape", "triangles", "scale"});
+    result.shape = shape->text();
+    std::string all;
+    bool known = false;
+    for (const std::string& name : shape_names()) {
+      known |= name == result.shape;
+      all += (all.empty() ? "" : ", ") + name;
+    }
+    if (!known) shape->fail("is \"" + result.shape + "\", which is no shape", "known names: " + all);
+    node.optional_whole("triangles", result.triangles, 100, 1'000'000,
+                        "give about how many triangles it should have");
+  } else {
+    node.object({"file", "scale"});
+    result.file = node.at("file").text();
+  }
   node.optional_number("scale", result.scale, range::positive);
   return result;
 }

@@ -19,8 +19,10 @@ namespace pith {
 
 /// The closed surface that is filled.
 struct SurfaceSource {
-  std::string file; ///< relative to the recipe's folder
-  double scale = 1; ///< multiplies the coordinates; 1000 for a file in metres
+  std::string file;      ///< relative to the recipe's folder; empty: `shape`
+  double scale = 1;      ///< multiplies the coordinates; 1000 for a file in metres
+  std::string shape;     ///< a name of shape_names(): a surface that pith makes itself
+  int triangles = 20000; ///< of a shape, about
 };
 
 /// Where a solid texture comes from: a file, or a generator by name. Exactly one of `file` and `procedural` is set.

@@ -316,7 +316,10 @@ void print(const json& value, int indent, std::string& text) {
 std::string recipe_text(const Recipe& recipe) {
   json document = {{"pith", 1}};
   if (!recipe.name.empty()) document["name"] = recipe.name;
-  document["surface"] = {{"file", recipe.surface.file}};
+  if (recipe.surface.shape.empty())
+    document["surface"] = {{"file", recipe.surface.file}};
+  else
+    document["surface"] = {{"shape", recipe.surface.shape}, {"triangles", recipe.surface.triangles}};
   put(document["surface"], "scale", recipe.surface.scale, 1.0);
   put_object(document, "tetrahedralize", json_from(recipe.tetrahedralize));
   put_list(document, "divide", recipe.divides);

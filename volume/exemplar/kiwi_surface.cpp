@@ -4,6 +4,7 @@
 #include "volume/exemplar/kiwi_surface.h"
 
 #include "volume/base/error.h"
+#include "volume/exemplar/edge_flips.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -84,73 +85,6 @@ void join(const std::vector<Vec3d>& position, std::uint32_t upper, int upper_cou
       ++b;
     }
   }
-}
-
-double cotangent(const Vec3d& at, const Vec3d& p, const Vec3d& q) {
-  const Vec3d u = p - at, v = q - at;
-  return u.dot(v) / u.cross(v).norm();
-}
-
-/// Which edges a sweep flips: those that bring valences nearer to six, or those that fail the Delaunay condition and
-/// keep valences within 5 to 7.
-enum class FlipFor { valence, delaunay };
-
-/// One sweep of flips over all edges; returns how many edges were flipped.
-int flip_edges(FlipFor aim, const std::vector<Vec3d>& position, std::vector<std::array<std::uint32_t, 3>>& corner) {
-  struct Side {
-    std::uint64_t edge;
-    std::uint32_t triangle;
-    bool operator<(const Side& o) const { return edge != o.edge ? edge < o.edge : triangle < o.triangle; }
-  };
-  std::vector<Side> sides;
-  std::vector<int> valence(position.size(), 0);
-  for (std::uint32_t t = 0; t < corner.size(); ++t)
-    for (int i = 0; i < 3; ++i) {
-      const std::uint64_t a = corner[t][i], b = corner[t][(i + 1) % 3];
-      sides.push_back({(std::min(a, b) << 32) | std::max(a, b), t});
-      ++valence[a];
-    }
-  std::sort(sides.begin(), sides.end());
-  std::vector<char> touched(corner.size(), 0);
-  const auto has_edge = [&](std::uint64_t edge) {
-    const auto at = std::lower_bound(sides.begin(), sides.end(), Side{edge, 0});
-    return at != sides.end() && at->edge == edge;
-  };
-  int flips = 0;
-  for (std::size_t i = 0; i + 1 < sides.size(); i += 2) {
-    const std::uint32_t t = sides[i].triangle, u = sides[i + 1].triangle;
-    if (touched[t] || touched[u]) continue;
-    const std::uint32_t low = std::uint32_t(sides[i].edge >> 32), high = std::uint32_t(sides[i].edge);
-    const auto opposite = [&](std::uint32_t triangle) {
-      for (const std::uint32_t v : corner[triangle])
-        if (v != low && v != high) return v;
-      return low;
-    };
-    const std::uint32_t c = opposite(t), d = opposite(u);
-    if (aim == FlipFor::valence) {
-      const auto surplus = [](int count) { return (count - 6) * (count - 6); };
-      const int before = surplus(valence[low]) + surplus(valence[high]) + surplus(valence[c]) + surplus(valence[d]);
-      const int after =
-          surplus(valence[low] - 1) + surplus(valence[high] - 1) + surplus(valence[c] + 1) + surplus(valence[d] + 1);
-      if (after >= before) continue;
-    } else {
-      if (valence[low] <= 5 || valence[high] <= 5 || valence[c] >= 7 || valence[d] >= 7) continue;
-      const double cotangents = cotangent(position[c], position[low], position[high]) +
-                                cotangent(position[d], position[low], position[high]);
-      if (cotangents >= -1e-9) continue;
-    }
-    if (has_edge((std::uint64_t(std::min(c, d)) << 32) | std::max(c, d))) continue;
-    // (a, b, c) runs through the edge a → b; the other triangle through b → a.
-    const auto& corners = corner[t];
-    const int at = int(std::find(corners.begin(), corners.end(), c) - corners.begin());
-    const std::uint32_t a = corners[(at + 1) % 3], b = corners[(at + 2) % 3];
-    corner[t] = {c, a, d};
-    corner[u] = {d, b, c};
-    --valence[low], --valence[high], ++valence[c], ++valence[d];
-    touched[t] = touched[u] = 1;
-    ++flips;
-  }
-  return flips;
 }
 
 /// Every vertex but the two ends to the mean of its neighbours, and back onto the shape.
