@@ -34,17 +34,20 @@ void run(const ExportOptions& options, const Session& session) {
                             result.extent[0], result.extent[1], result.extent[2], result.voxel, result.active));
   } else if (extension == "vtu") {
     session.stop_if_asked();
-    write_vtu(options.output, root, pieces);
-    session.say(options.output.string() + ": tets of all pieces");
+    const TetCounts written = write_vtu(options.output, root, pieces);
+    object["tets"] = written.tets;
+    object["vertices"] = written.vertices;
+    session.say(fmt::format("{}: {} tets of {} piece(s), {} vertices", options.output.string(), written.tets,
+                            pieces.piece.size(), written.vertices));
   } else {
     const ColoredSurface surface =
         colored_surface(root, pieces, {.max_edge = options.max_edge}, session.progress("export"));
     session.stop_if_asked();
-    write_surface(options.output, surface, name.empty() ? "pith" : name);
-    object["triangles"] = surface.triangle.size();
-    object["vertices"] = surface.vertex.size();
-    session.say(fmt::format("{}: {} triangles, {} vertices", options.output.string(), surface.triangle.size(),
-                            surface.vertex.size()));
+    const SurfaceCounts written = write_surface(options.output, surface, name.empty() ? "pith" : name);
+    object["triangles"] = written.triangles;
+    if (written.vertices > 0) object["vertices"] = written.vertices;
+    session.say(fmt::format("{}: {} triangles{}", options.output.string(), written.triangles,
+                            written.vertices > 0 ? fmt::format(", {} vertices", written.vertices) : ""));
   }
   object["bytes"] = std::filesystem::file_size(options.output);
   object["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -59,13 +62,19 @@ Verb export_verb(CLI::App& program) {
   app->add_option("model", options->model, "MODEL.pith")->required();
   app->add_option("-o,--output", options->output, "FILE.ply, .obj, .stl, .glb, .vtu or .vdb")->required();
   app->add_option("--max-edge", options->max_edge, "surfaces: subdivide until no edge is longer, mm; 0: as they are")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   app->add_option("--voxel", options->vdb.voxel, "vdb: edge of a voxel, mm; 0: longest extent / 256")
-      ->check(CLI::NonNegativeNumber);
-  app->add_option("--scale", options->vdb.scale, "vdb: file units per mm; 0.001: metres")->check(CLI::PositiveNumber);
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app->add_option("--scale", options->vdb.scale, "vdb: file units per mm; 0.001: metres")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   app->add_option("--density", options->vdb.density, "vdb: density inside, per file unit")
-      ->check(CLI::PositiveNumber);
-  app->add_option("--color-name", options->vdb.color_name, "vdb: name of the colour grid (Cd for Houdini)");
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app->add_option("--color-name", options->vdb.color_name, "vdb: name of the colour grid (Cd for Houdini)")
+      ->capture_default_str();
   return {app, [options](const Session& session) { run(*options, session); }};
 }
 

@@ -118,7 +118,7 @@ private:
 
 } // namespace
 
-void write_glb(const std::filesystem::path& path, const ColoredSurface& surface, const std::string& name) {
+SurfaceCounts write_glb(const std::filesystem::path& path, const ColoredSurface& surface, const std::string& name) {
   GlbWriter writer(surface);
   json meshes = json::array(), nodes = json::array();
   for (std::size_t begin = 0, end = 0; begin < surface.part.size(); begin = end) {
@@ -132,6 +132,7 @@ void write_glb(const std::filesystem::path& path, const ColoredSurface& surface,
   if (writer.bytes() > 0xf0000000u)
     throw IoFailure(path.string(), "would be larger than the 4 GB that GLB allows; give a longer max_edge");
   write_file(path, writer.file(name, std::move(meshes), std::move(nodes)));
+  return {surface.triangle.size(), surface.vertex.size()};
 }
 
 } // namespace pith

@@ -45,26 +45,38 @@ struct ColoredSurface {
 ColoredSurface colored_surface(const Root& root, const Pieces& pieces, const SurfaceOptions& options = {},
                                const Progress& progress = {});
 
-/// The files appear whole or not at all. Errors: IoFailure; InvalidInput for an extension that is none of the four.
+/// What stands in a file.
+struct SurfaceCounts {
+  std::size_t triangles = 0;
+  std::size_t vertices = 0; ///< 0 in STL, which has none: each triangle names its corners by place
+};
+
+/// All of them return what they wrote. The files appear whole or not at all. Errors: IoFailure; InvalidInput for an
+/// extension that is none of the four.
 
 /// By extension: .ply, .obj, .stl or .glb.
-void write_surface(const std::filesystem::path& path, const ColoredSurface& surface,
-                   const std::string& name = "pith");
+SurfaceCounts write_surface(const std::filesystem::path& path, const ColoredSurface& surface,
+                            const std::string& name = "pith");
 
 /// Binary little-endian; x y z float32, nx ny nz, red green blue (8 bit, sRGB). Points are shared where their colours
 /// agree, so that a model without skin layers is watertight by index. (Readers in wide use stumble over properties of
 /// faces, so there are none.)
-void write_ply(const std::filesystem::path& path, const ColoredSurface& surface);
+SurfaceCounts write_ply(const std::filesystem::path& path, const ColoredSurface& surface);
 /// `v x y z r g b` (sRGB in [0, 1]), `vn`, points shared as in PLY; one object per piece with groups skin, section_0
 /// ... Edges between skin and section are shaded softly in both; GLB keeps them sharp.
-void write_obj(const std::filesystem::path& path, const ColoredSurface& surface, const std::string& name = "pith");
+SurfaceCounts write_obj(const std::filesystem::path& path, const ColoredSurface& surface,
+                        const std::string& name = "pith");
 /// Binary; no colour.
-void write_stl(const std::filesystem::path& path, const ColoredSurface& surface);
+SurfaceCounts write_stl(const std::filesystem::path& path, const ColoredSurface& surface);
 /// Metres, axes as they are (y is up in pith and in glTF); one mesh per piece, COLOR_0 linear 16 bit.
-void write_glb(const std::filesystem::path& path, const ColoredSurface& surface, const std::string& name = "pith");
+SurfaceCounts write_glb(const std::filesystem::path& path, const ColoredSurface& surface,
+                        const std::string& name = "pith");
 
 /// The tets of all pieces where they stand, for ParaView: points with `color` (linear); cells with `region`,
 /// `root` (root tet), `piece` and `color` (at the barycentre). Appended raw binary.
-void write_vtu(const std::filesystem::path& path, const Root& root, const Pieces& pieces);
+struct TetCounts {
+  std::size_t tets = 0, vertices = 0;
+};
+TetCounts write_vtu(const std::filesystem::path& path, const Root& root, const Pieces& pieces);
 
 } // namespace pith

@@ -62,7 +62,7 @@ WeldedSurface welded(const ColoredSurface& surface) {
   return result;
 }
 
-void write_ply(const std::filesystem::path& path, const ColoredSurface& surface) {
+SurfaceCounts write_ply(const std::filesystem::path& path, const ColoredSurface& surface) {
   const WeldedSurface weld = welded(surface);
   std::string bytes =
       "ply\nformat binary_little_endian 1.0\ncomment pith, millimetres\nelement vertex " +
@@ -81,9 +81,10 @@ void write_ply(const std::filesystem::path& path, const ColoredSurface& surface)
     for (const std::uint32_t v : triangle) append(bytes, static_cast<std::int32_t>(weld.of[v]));
   }
   write_file(path, bytes);
+  return {surface.triangle.size(), weld.vertex.size()};
 }
 
-void write_obj(const std::filesystem::path& path, const ColoredSurface& surface, const std::string& name) {
+SurfaceCounts write_obj(const std::filesystem::path& path, const ColoredSurface& surface, const std::string& name) {
   const WeldedSurface weld = welded(surface);
   std::string text = "# pith, millimetres\n";
   for (const auto& vertex : weld.vertex) {
@@ -113,9 +114,10 @@ void write_obj(const std::filesystem::path& path, const ColoredSurface& surface,
     }
   }
   write_file(path, text);
+  return {surface.triangle.size(), weld.vertex.size()};
 }
 
-void write_stl(const std::filesystem::path& path, const ColoredSurface& surface) {
+SurfaceCounts write_stl(const std::filesystem::path& path, const ColoredSurface& surface) {
   std::string bytes = "pith, millimetres";
   bytes.resize(80, ' ');
   append(bytes, static_cast<std::uint32_t>(surface.triangle.size()));
@@ -131,9 +133,11 @@ void write_stl(const std::filesystem::path& path, const ColoredSurface& surface)
     append(bytes, std::uint16_t(0));
   }
   write_file(path, bytes);
+  return {surface.triangle.size(), 0};
 }
 
-void write_surface(const std::filesystem::path& path, const ColoredSurface& surface, const std::string& name) {
+SurfaceCounts write_surface(const std::filesystem::path& path, const ColoredSurface& surface,
+                            const std::string& name) {
   const std::string extension = path.extension().string();
   if (extension == ".ply") return write_ply(path, surface);
   if (extension == ".obj") return write_obj(path, surface, name);

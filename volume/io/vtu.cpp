@@ -62,7 +62,7 @@ private:
 
 } // namespace
 
-void write_vtu(const std::filesystem::path& path, const Root& root, const Pieces& pieces) {
+TetCounts write_vtu(const std::filesystem::path& path, const Root& root, const Pieces& pieces) {
   const TetMesh& mesh = root.model().mesh;
   const std::vector<Cell> cell = cells_of(pieces, mesh);
 
@@ -138,6 +138,7 @@ void write_vtu(const std::filesystem::path& path, const Root& root, const Pieces
   vtu.array("types", "UInt8", 1, type);
   vtu.close("Cells");
   vtu.write(path);
+  return {cell.size(), at.size()};
 }
 
 } // namespace pith
