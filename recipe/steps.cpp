@@ -65,8 +65,13 @@ CutResult apply_cut(Pieces& pieces, const TetMesh& root, const Boundary& boundar
   try {
     result = cut(work, root, boundary, *level_set, options);
   } catch (const InvalidInput& error) {
-    throw InvalidInput(where, std::string("cannot be made (") + error.what() + ")",
-                       "move the cut so that it passes through the solid");
+    // What is wrong and how to mend it, at the place in the recipe instead of the library's.
+    std::string what = error.what();
+    if (what.starts_with("cut: ")) what.erase(0, 5);
+    const std::size_t mend = what.rfind("; ");
+    throw InvalidInput(where, "cannot be made: " + what.substr(0, mend),
+                       mend == std::string::npos ? "move the cut so that it passes through the solid"
+                                                 : what.substr(mend + 2));
   }
   if (step.spread > 0) spread(work, result, root, step.spread);
 

@@ -8,6 +8,7 @@
 
 #include "volume/base/error.h"
 #include "volume/base/parallel.h"
+#include "volume/field/scale_hint.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -41,7 +42,7 @@ std::vector<FieldConstraint> tangents_of(const TetMesh& mesh, const Locator& loc
   if (constraints.empty())
     throw InvalidInput(
         where, "none of its " + std::to_string(strokes.size()) + " strokes touches region " + std::to_string(region),
-        "draw one on or inside the region, in the mesh's millimetres");
+        scale_hint(mesh, strokes.front().point, "draw one on or inside the region, in the mesh's millimetres"));
   return constraints;
 }
 

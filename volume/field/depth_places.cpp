@@ -4,6 +4,7 @@
 #include "volume/base/error.h"
 #include "volume/base/parallel.h"
 #include "volume/field/face_fill.h"
+#include "volume/field/scale_hint.h"
 #include "volume/mesh/facet_tree.h"
 
 #include <Eigen/Geometry>
@@ -190,7 +191,7 @@ struct Gathering {
       throw InvalidInput(name,
                          "the stroke from " + text_of(stroke.front()) + " to " + text_of(stroke.back()) +
                              " misses region " + std::to_string(region),
-                         "draw it on or inside the region, in the mesh's millimetres");
+                         scale_hint(mesh, stroke, "draw it on or inside the region, in the mesh's millimetres"));
   }
 };
 

@@ -7,6 +7,7 @@
 #include "volume/base/error.h"
 #include "volume/base/parallel.h"
 #include "volume/field/axis_field.h"
+#include "volume/field/scale_hint.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -87,8 +88,9 @@ PerVertex<Vec3d> local_scale(const FrameInput& in, double margin) {
                                                      length > 0 ? length / samples_per_scale_stroke : 1, margin))
       constraints.push_back({held.location.tet, held.location.barycentric, Vec3d(value, 0, 0)});
     if (constraints.size() == before)
-      throw InvalidInput(name, "touches no place of region " + std::to_string(in.region),
-                         "put it on or inside the region, in the mesh's millimetres");
+      throw InvalidInput(
+          name, "touches no place of region " + std::to_string(in.region),
+          scale_hint(in.mesh, one.stroke, "put it on or inside the region, in the mesh's millimetres"));
     low = std::min(low, value), high = std::max(high, value);
   }
   PerVertex<Vec3d> factor;
