@@ -5,6 +5,7 @@
 #include "volume/base/error.h"
 #include "volume/mesh/boundary.h"
 #include "volume/mesh/surface_defects_intersections.h"
+#include "volume/mesh/surface_plan.h"
 #include "volume/mesh/tetrahedralize_regions.h"
 #include "volume/mesh/tetrahedralize_tetgen.h"
 #include "volume/mesh/tetrahedralize_wrap.h"
@@ -208,6 +209,39 @@ void mesh_wrap(const TriMesh& original, const TriMesh& mesh, const std::string& 
     throw SolverFailure(name + ": the surface cannot be filled (" + reason + "), nor can its wrap: " + failure, 0);
 }
 
+/// A surface with its holes closed and a few faults cut out, as far as that goes.
+struct Mended {
+  surface::Repaired ready, uncut; ///< uncut: before faults were cut out, for the wrap
+  SurfaceDefects defects;         ///< of `ready`
+  std::string note;               ///< what was done
+  double moved = 0;               ///< mm
+};
+
+Mended mended(const TriMesh& input, surface::Repaired ready, SurfaceDefects defects) {
+  Mended result{.ready = std::move(ready), .uncut = {}, .defects = defects, .note = {}};
+  result.note = result.ready.note;
+  double widest = 0;
+  const std::size_t holes = defects.border_edges > 0 ? surface::close_holes(result.ready, widest) : 0;
+  if (holes > 0) {
+    surface::mend(result.ready);
+    comma(result.note, (holes == 1 ? "1 hole" : std::to_string(holes) + " holes") + " closed, up to " +
+                           short_number(widest) + " mm across");
+    result.defects = surface_defects(result.ready.mesh);
+  }
+  result.uncut = result.ready;
+  if (surface::can_be_filled(result.defects)) return result;
+  const std::size_t cut_out = surface::cut_out_faults(result.ready);
+  if (cut_out == 0) return result;
+  result.moved = wrap::largest_distance(input, result.ready.mesh);
+  if (nothing_lost(input, result.ready.mesh)) {
+    result.defects = surface_defects(result.ready.mesh);
+    comma(result.note, std::to_string(cut_out) +
+                           " triangles at fault cut out and closed, which moved the surface by up to " +
+                           short_number(result.moved) + " mm");
+  }
+  return result;
+}
+
 } // namespace
 
 TetrahedralizeResult tetrahedralize(const TriMesh& input, const std::string& name,
@@ -250,43 +284,52 @@ TetrahedralizeResult tetrahedralize(const TriMesh& input, const std::string& nam
   if (options.method == Method::tetgen)
     throw InvalidInput(name, "the surface has " + defects.summary(), "repair the surface, or allow pith to mend it");
   const std::string fault = "the surface has " + defects.summary();
-  std::string mended = ready.note;
-  double widest = 0;
-  if (const std::size_t holes = defects.border_edges > 0 ? surface::close_holes(ready, widest) : 0; holes > 0) {
-    surface::mend(ready);
-    comma(mended, (holes == 1 ? "1 hole" : std::to_string(holes) + " holes") + " closed, up to " +
-                      short_number(widest) + " mm across");
-    defects = surface_defects(ready.mesh);
-  }
-  const surface::Repaired uncut = ready;
-  double moved = 0;
-  if (!surface::can_be_filled(defects)) {
-    if (const std::size_t cut_out = surface::cut_out_faults(ready); cut_out > 0) {
-      moved = wrap::largest_distance(input, ready.mesh);
-      if (nothing_lost(input, ready.mesh)) {
-        defects = surface_defects(ready.mesh);
-        comma(mended, std::to_string(cut_out) +
-                          " triangles at fault cut out and closed, which moved the surface by up to " +
-                          short_number(moved) + " mm");
-      }
-    }
-  }
+  Mended mend = mended(input, std::move(ready), defects);
 
   std::string reason = fault;
-  if (surface::can_be_filled(defects)) {
+  if (surface::can_be_filled(mend.defects)) {
     result.surface = input;
     result.method = "tetgen";
     result.note = fault;
-    if (!mended.empty()) join(result.note, "mended in place: " + mended);
-    surface::append_added(ready, result.surface);
-    result.surface_moved = moved;
-    const std::string failure = fill_clean(ready, name, options, progress, result);
+    if (!mend.note.empty()) join(result.note, "mended in place: " + mend.note);
+    surface::append_added(mend.ready, result.surface);
+    result.surface_moved = mend.moved;
+    const std::string failure = fill_clean(mend.ready, name, options, progress, result);
     if (failure.empty()) return result;
     join(reason, failure);
   }
   result = {};
-  mesh_wrap(input, uncut.mesh, name, reason, options, progress, result);
+  mesh_wrap(input, mend.uncut.mesh, name, reason, options, progress, result);
   return result;
+}
+
+SurfacePlan surface_plan(const TriMesh& surface, const std::string& name) {
+  SurfacePlan plan;
+  try {
+    check_input(surface, name, {});
+    surface::Repaired ready = surface::repaired(surface);
+    const PerTriangle<char> collinear = surface::collinear_triangles(ready.mesh);
+    if (std::count(collinear.begin(), collinear.end(), 1) == std::ptrdiff_t(collinear.size())) {
+      plan = {SurfacePlan::Way::refuse, 0, "all of its triangles are degenerate"};
+      return plan;
+    }
+    const SurfaceDefects defects = surface_defects(ready.mesh);
+    if (surface::can_be_filled(defects)) {
+      const bool turned = defects.inside_out_shells > 0;
+      plan.way = ready.note.empty() && !turned ? SurfacePlan::Way::as_it_is : SurfacePlan::Way::mend;
+      plan.note = ready.note;
+      if (turned) comma(plan.note, "inside-out shells turned");
+      return plan;
+    }
+    const Mended mend = mended(surface, std::move(ready), defects);
+    const bool filled = surface::can_be_filled(mend.defects);
+    plan.way = filled ? SurfacePlan::Way::mend : SurfacePlan::Way::wrap;
+    plan.moved = filled ? mend.moved : 0;
+    plan.note = filled ? mend.note : "the surface has " + defects.summary();
+  } catch (const InvalidInput& error) {
+    plan = {SurfacePlan::Way::refuse, 0, error.what()};
+  }
+  return plan;
 }
 
 } // namespace pith
