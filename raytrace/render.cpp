@@ -69,7 +69,7 @@ Film render(const Scene& scene, const View& view, const Lights& lights, const Re
 
   for (int done = 0; done < options.samples; done += samples_per_pass) {
     const int end = std::min(options.samples, done + samples_per_pass);
-    parallel_blocks(tiles, 1, [&](std::size_t begin, std::size_t) {
+    const auto one_tile = [&](std::size_t begin, std::size_t) {
       const int x0 = static_cast<int>(begin % across) * tile, y0 = static_cast<int>(begin / across) * tile;
       for (int y = y0; y < std::min(y0 + tile, options.height); ++y)
         for (int x = x0; x < std::min(x0 + tile, options.width); ++x) {
@@ -81,11 +81,17 @@ Film render(const Scene& scene, const View& view, const Lights& lights, const Re
       const std::size_t so_far = ++finished;
       if (const std::unique_lock lock(reporting, std::try_to_lock); lock)
         report(progress, double(so_far) / (tiles * passes));
-    });
+    };
+    try {
+      parallel_blocks(tiles, 1, one_tile);
+    } catch (const Cancelled&) { // tiles under way have been finished: every pixel is whole
+      if (!options.keep_when_cancelled || done == 0) throw;
+      return film;
+    }
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     if (options.time_limit > 0 && elapsed.count() >= options.time_limit) break;
   }
-  report(progress, 1);
+  if (!options.keep_when_cancelled) report(progress, 1);
   return film;
 }
 

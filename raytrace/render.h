@@ -25,15 +25,17 @@ struct RenderOptions {
   int samples = 64;              ///< per pixel
   int first_sample = 0;          ///< continues a film: samples first_sample … first_sample + samples − 1
   std::uint64_t seed = 1;
-  int threads = 0;       ///< 0: all cores
-  double time_limit = 0; ///< seconds after which no further pass over the picture starts; 0: none
-  int max_depth = 3;     ///< surfaces on a path: 1 direct light only, 2 one bounce …
+  int threads = 0;                  ///< 0: all cores
+  double time_limit = 0;            ///< seconds after which no further pass over the picture starts; 0: none
+  bool keep_when_cancelled = false; ///< an end asked for after the first pass gives the film so far
+  int max_depth = 3;                ///< surfaces on a path: 1 direct light only, 2 one bounce …
   Background background;
 };
 
 /// Renders. The same bytes for any number of threads; each sample is a function of (seed, pixel, sample) alone. A
 /// time limit ends after a whole pass (FilmPixel::samples says how many). Errors: InvalidInput when an option is out
-/// of range; Cancelled when `progress` says so.
+/// of range; Cancelled when `progress` says so (with keep_when_cancelled only before the first pass is finished:
+/// later the film is returned, in which some tiles have the samples of one pass more).
 Film render(const Scene& scene, const View& view, const Lights& lights, const RenderOptions& options = {},
             const Progress& progress = {});
 

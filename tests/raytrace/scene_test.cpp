@@ -225,6 +225,50 @@ TEST(Framing, LooksAtTheSections) {
   EXPECT_GT(std::abs(framed_view(Scene(root, pieces, options)).forward().z()), 0.6);
 }
 
+/// Closed forms: a disc straight on, from behind, and at an angle.
+TEST(Framing, TheShareOfTheSectionsThatAViewShows) {
+  const Root root = root_of(tet_ball(8, 20), Vec3d(0.5, 0.5, 0.5));
+  Pieces pieces = whole_piece(root.model().mesh);
+  EXPECT_EQ(section_share(Scene(root, pieces, matte()), View{}), 1); // there is none to hide
+  cut(pieces, root.model().mesh, root.model().boundary, *level_set_of(PlaneCut{{0, 0, 1}, 1}));
+  keep_pieces(pieces, root.model().mesh, std::vector<std::uint32_t>{0});
+  const Scene half(root, pieces, matte());
+  const auto share = [&](const Vec3d& direction) {
+    return section_share(half, framed_view(half, {.direction = direction, .vertical_angle = 0}));
+  };
+  EXPECT_NEAR(share({0, 0, 1}), 1, 1e-6);
+  EXPECT_NEAR(share({0, 0, -1}), 0, 1e-6);
+  EXPECT_NEAR(share({std::sqrt(3.0), 0, 1}), 0.5, 1e-6);
+  const View near = framed_view(half, {.direction = {0, 0, 1}, .vertical_angle = 1});
+  EXPECT_GT(section_share(half, near), 0.8); // its rim is seen aslant
+  EXPECT_LT(section_share(half, near), 0.99);
+}
+
+/// Halves that face one another across a gap, along several axes: hardly any view shows more than the chosen one.
+TEST(Framing, LooksIntoTheGapBetweenHalves) {
+  const Root root = root_of(tet_ball(8, 20), Vec3d(0.5, 0.5, 0.5));
+  SceneOptions options = matte();
+  options.ground.on = true;
+  for (const Vec3d& normal : {Vec3d(1, 0, 0), Vec3d(0, 0, 1), Vec3d(0, 1, 0), Vec3d(1, 0.5, -0.7)})
+    for (const double gap : {15.0, 40.0}) {
+      Pieces pieces = whole_piece(root.model().mesh);
+      const CutResult result =
+          cut(pieces, root.model().mesh, root.model().boundary, *level_set_of(PlaneCut{normal, 0}));
+      spread(pieces, result, root.model().mesh, gap);
+      const Scene scene(root, pieces, options);
+      const double chosen = section_share(scene, framed_view(scene));
+      double best = 0;
+      for (int turn = 0; turn < 36; ++turn)
+        for (const double rise : {0.15, 0.3, 0.45, 0.6, 0.8, 1.0}) {
+          const double angle = turn * 0.1745;
+          const Vec3d direction(std::cos(rise) * std::cos(angle), std::sin(rise), std::cos(rise) * std::sin(angle));
+          best = std::max(best, section_share(scene, framed_view(scene, {.direction = direction})));
+        }
+      EXPECT_GT(best, 0.05);
+      EXPECT_GT(chosen, 0.8 * best) << normal.transpose() << ", gap " << gap;
+    }
+}
+
 TEST(Scene, RefusesWhatItCannotShow) {
   const Root root = root_of(tet_grid(1, 1, 1), Vec3d(0.5, 0.5, 0.5));
   const Pieces pieces = whole_piece(root.model().mesh);
