@@ -1,5 +1,5 @@
-// pith check FILE: is this surface or model usable? Figures, and how to mend what is wrong.
-#include "cli/command.h"
+// pith check FILE: is this surface, recipe or model usable? Figures, and how to mend what is wrong.
+#include "cli/check.h"
 #include "cli/pieces_report.h"
 #include "recipe/recipe.h"
 #include "volume/base/error.h"
@@ -7,23 +7,12 @@
 #include "volume/io/mesh_io.h"
 #include "volume/io/model_io.h"
 #include "volume/measure/coverage.h"
+#include "volume/mesh/surface_plan.h"
 
 #include <cmath>
 #include <fmt/format.h>
 
 namespace pith::cli {
-namespace {
-
-struct CheckOptions {
-  std::filesystem::path file;
-  std::size_t points = 200'000;
-};
-
-struct Finding {
-  std::string what;
-  std::size_t count = 0;
-  std::string mend;
-};
 
 Json json_from(const std::vector<Finding>& findings) {
   Json list = Json::array();
@@ -37,6 +26,58 @@ void say(const std::vector<Finding>& findings, const Session& session) {
     session.say(fmt::format("  {} {}: {}", finding.count, finding.what, finding.mend));
 }
 
+std::string text_of_extent(const Box& box) {
+  if (box.empty()) return "nothing";
+  const Vec3d size = box.extent();
+  return fmt::format("{:.6g} × {:.6g} × {:.6g} mm", size.x(), size.y(), size.z());
+}
+
+std::string unit_hint(const Box& box) {
+  constexpr double small = 1, large = 5000; // mm
+  if (box.empty()) return {};
+  const double diagonal = box.diagonal();
+  if (diagonal > 0 && diagonal < small)
+    return fmt::format("only {:.3g} mm across: is the file in metres? then \"scale\": 1000 in the recipe's "
+                       "\"surface\" makes it millimetres",
+                       diagonal);
+  if (diagonal > large)
+    return fmt::format("{:.3g} m across: is the file in micrometres? then \"scale\": 0.001 in the recipe's "
+                       "\"surface\" makes it millimetres",
+                       diagonal / 1000);
+  return {};
+}
+
+namespace {
+
+struct CheckOptions {
+  std::filesystem::path file;
+  std::size_t points = 200'000;
+};
+
+/// In words, and as a word for programs.
+struct Verdict {
+  const char* name;
+  std::string words;
+  bool usable;
+};
+
+Verdict verdict_of(const SurfacePlan& plan) {
+  switch (plan.way) {
+  case SurfacePlan::Way::as_it_is:
+    return {"clean", "clean", true};
+  case SurfacePlan::Way::mend:
+    return {"mendable",
+            plan.moved > 0 ? fmt::format("not clean; make will mend it in place ({})", plan.note)
+                           : fmt::format("not clean; make will mend it without moving it ({})", plan.note),
+            true};
+  case SurfacePlan::Way::wrap:
+    return {"wrap", "NOT usable as it is; make would wrap it, so that it moves", false};
+  case SurfacePlan::Way::refuse:
+    break;
+  }
+  return {"refuse", "NOT usable; make would refuse it (" + plan.note + ")", false};
+}
+
 void check_surface(const CheckOptions& options, const Session& session) {
   const TriMesh mesh = read_tri_mesh(options.file);
   const SurfaceDefects defects = surface_defects(mesh);
@@ -47,7 +88,7 @@ void check_surface(const CheckOptions& options, const Session& session) {
   add(defects.non_finite_vertices, "vertices that are not finite", "remove them; the file is damaged");
   add(defects.degenerate_triangles, "triangles without area", "merge vertices that lie at one place");
   add(defects.duplicate_triangles, "triangles that are there twice", "remove the copies");
-  add(defects.border_edges, "border edges (the surface is open)", "fill the holes, or let make wrap the surface");
+  add(defects.border_edges, "border edges (the surface is open)", "fill the holes, or let make close or wrap them");
   add(defects.non_manifold_edges, "edges with more than two triangles",
       "remove inner walls, or let make wrap the surface");
   add(defects.non_manifold_vertices, "vertices where the surface touches itself",
@@ -57,28 +98,39 @@ void check_surface(const CheckOptions& options, const Session& session) {
       "unite the parts, or let make wrap the surface");
   add(defects.inside_out_shells, "shells that are inside out", "flip their normals");
 
-  const bool clean = defects.clean();
-  const bool usable = mesh.triangle_count() > 0 && defects.non_finite_vertices == 0;
-  session.say(fmt::format("{}: {} triangles, {} shell(s), volume {:.6g} mm³: {}", options.file.string(),
-                          mesh.triangle_count(), defects.shells, defects.volume,
-                          clean    ? "clean"
-                          : usable ? "not clean; make will mend or wrap it"
-                                   : "not usable"));
+  session.stop_if_asked();
+  const SurfacePlan plan = surface_plan(mesh, options.file.filename().string());
+  const Verdict verdict = verdict_of(plan);
+  const Box bounds = bounds_of(mesh);
+  const std::string hint = unit_hint(bounds);
+  session.say(fmt::format("{}: {} triangles, {} shell(s), {}, volume {:.6g} mm³: {}", options.file.string(),
+                          mesh.triangle_count(), defects.shells, text_of_extent(bounds), defects.volume,
+                          verdict.words));
   say(findings, session);
   const Vec3d at = defects.first_defect;
   if (!findings.empty() && at.allFinite())
     session.say(fmt::format("  look near ({:.6g}, {:.6g}, {:.6g})", at.x(), at.y(), at.z()));
+  if (!hint.empty()) session.say("  " + hint);
+  const Vec3d extent = bounds.empty() ? Vec3d::Zero() : Vec3d(bounds.extent());
   session.print({{"file", options.file.string()},
                  {"kind", "surface"},
-                 {"usable", usable},
-                 {"clean", clean},
+                 {"usable", verdict.usable},
+                 {"verdict", verdict.name},
+                 {"clean", defects.clean()},
                  {"triangles", mesh.triangle_count()},
                  {"shells", defects.shells},
+                 {"extent", {extent.x(), extent.y(), extent.z()}},
+                 {"unit_hint", hint},
                  {"volume", defects.volume},
+                 {"mended", plan.way == SurfacePlan::Way::mend ? plan.note : ""},
+                 {"moved", plan.moved},
                  {"findings", json_from(findings)},
                  {"first_defect",
                   findings.empty() || !at.allFinite() ? Json(nullptr) : Json::array({at.x(), at.y(), at.z()})}});
-  if (!usable) throw InvalidInput(options.file.string(), defects.summary(), "the file is damaged, export it again");
+  if (!verdict.usable)
+    throw InvalidInput(options.file.string(), plan.note,
+                       plan.way == SurfacePlan::Way::wrap ? "repair the surface, or accept that make wraps it"
+                                                          : "give a closed surface that encloses a volume");
 }
 
 /// Local extrema of the depth of each solid that none of its constraints asks for.
@@ -123,8 +175,8 @@ void check_model(const CheckOptions& options, const Session& session) {
                       {"watertight", report.watertight()},
                       {"manifold", report.manifold()},
                       {"non_manifold_edges", report.non_manifold_edges},
-                      {"non_manifold_vertices", report.non_manifold_vertices},
-                      {"minimum_dihedral", report.minimum_dihedral}});
+                      {"non_manifold_vertices", report.non_manifold_vertices}});
+    if (report.cut_tets > 0) pieces.back()["minimum_dihedral"] = report.minimum_dihedral;
     session.say(fmt::format("  piece {}: {:.6g} mm³, {} triangles, {}, {}", piece, report.volume, report.triangles,
                             report.watertight() ? "watertight" : "NOT watertight",
                             report.manifold()
@@ -138,15 +190,17 @@ void check_model(const CheckOptions& options, const Session& session) {
     root_volume += signed_volume(file.model.mesh, tet);
 
   const Root root(std::move(file.model));
-  const CoverageMeasure survey = coverage_measure(
-      root, {.points = options.points, .seed = session.seed.value_or(1), .region = -1}, session.progress("check"));
+  const CoverageMeasure survey =
+      coverage_measure(root, {.points = options.points, .seed = session.seed.value_or(1), .region = -1, .hole = 0.95},
+                       session.progress("check"));
   if (survey.holes > 0)
     findings.push_back(
-        {fmt::format("of {} points that something shines through (the worst at ({:.6g}, {:.6g}, {:.6g}), "
+        {fmt::format("of {} points with a coverage below 0.95 (the worst at ({:.6g}, {:.6g}, {:.6g}), "
                      "coverage {:.4f})",
                      survey.points, survey.worst.x(), survey.worst.y(), survey.worst.z(), survey.least_coverage),
          survey.holes, "make the model again with a higher fill/coverage_order or a larger mask/radius"});
-  session.say(fmt::format("  {} random points: {} holes, {} thin (by more than 1/255), least coverage {:.4f}; "
+  session.say(fmt::format("  {} random points: {} holes (coverage below 0.95), {} thin (below 254/255), least "
+                          "coverage {:.4f}; "
                           "look-ups read per point: median {}, "
                           "p99 {}, most {}",
                           survey.points, survey.holes, survey.thin, survey.least_coverage, survey.median_reads,
@@ -177,18 +231,25 @@ void run(const CheckOptions& options, const Session& session) {
   if (extension == "pith") return check_model(options, session);
   if (extension == "obj" || extension == "off" || extension == "ply" || extension == "stl")
     return check_surface(options, session);
-  throw InvalidInput(options.file.string(), "is neither a model nor a surface",
-                     "give a .pith, .obj, .off, .ply or .stl");
+  if (extension == "json") return check_recipe(options.file, session);
+  throw InvalidInput(options.file.string(), "is neither a model nor a surface nor a recipe",
+                     "give a .pith, .obj, .off, .ply, .stl or .json");
 }
 
 } // namespace
 
 Verb check_verb(CLI::App& program) {
   auto options = std::make_shared<CheckOptions>();
-  CLI::App* app = program.add_subcommand("check", "is a surface or model usable? figures, and how to mend it");
-  app->add_option("file", options->file, "MODEL.pith, or a surface")->required();
+  CLI::App* app =
+      program.add_subcommand("check", "is a surface, recipe or model usable? figures, and how to mend it");
+  app->description("is a surface, recipe or model usable? figures, and how to mend it.\n"
+                   "Exit code 0: a surface that make takes as it is or mends in place; a recipe without findings; a "
+                   "model whose pieces are closed and have no holes (coverage below 0.95 at a random point; thinner "
+                   "places are counted only). 1: a surface that make would wrap or refuse; otherwise not usable.");
+  app->add_option("file", options->file, "a surface (.obj, .off, .ply, .stl), RECIPE.json or MODEL.pith")->required();
   app->add_option("--points", options->points, "random points of a model at which holes are looked for")
-      ->check(CLI::Range(std::size_t(0), std::size_t(100'000'000)));
+      ->check(CLI::Range(std::size_t(0), std::size_t(100'000'000)))
+      ->capture_default_str();
   return {app, [options](const Session& session) { run(*options, session); }};
 }
 

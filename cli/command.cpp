@@ -13,11 +13,12 @@
 
 namespace pith::cli {
 
-void ProgressLine::show(const std::string& what, double fraction) {
-  if (!on_) return;
+void ProgressLine::show(const std::string& what, double fraction, const std::string& line) {
+  if (kind_ == Kind::none) return;
   const std::int64_t now =
       std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now().time_since_epoch())
           .count();
+  if (kind_ == Kind::lines) return tell(what, line, now);
   if (shown_ && now - last_ms_ < 50) return;
   last_ms_ = now;
   constexpr int width = 30;
@@ -28,20 +29,28 @@ void ProgressLine::show(const std::string& what, double fraction) {
   shown_ = true;
 }
 
+void ProgressLine::tell(const std::string& what, const std::string& line, std::int64_t now) {
+  constexpr std::int64_t long_work = 1000; // ms
+  const auto [begun, fresh] = begun_.try_emplace(what, now);
+  if (fresh || begun->second < 0 || now - begun->second < long_work) return;
+  begun->second = -1;
+  std::fprintf(stderr, "%s …\n", (line.empty() ? what : line).c_str());
+}
+
 void ProgressLine::clear() {
   if (shown_) std::fputs("\r\033[K", stderr);
   shown_ = false;
 }
 
-Progress Session::progress(const std::string& what) const {
-  return [this, what](double fraction) {
-    if (progress_line) progress_line->show(what, fraction);
-    return !(interrupt && interrupt->asked());
+Progress Session::progress(const std::string& what, const std::string& line) const {
+  return [this, what, line](double fraction) {
+    if (progress_line) progress_line->show(what, fraction, line);
+    return !cancelled();
   };
 }
 
 void Session::stop_if_asked() const {
-  if (interrupt && interrupt->asked()) throw Cancelled();
+  if (cancelled()) throw Cancelled();
 }
 
 void Session::say(const std::string& line) const {
@@ -53,6 +62,7 @@ void Session::say(const std::string& line) const {
 void Session::print(const Json& object) const {
   if (!json) return;
   if (progress_line) progress_line->clear();
+  printed = true;
   std::printf("%s\n", object.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
 }
 
@@ -80,6 +90,27 @@ void check_output(const std::filesystem::path& path, std::initializer_list<const
     throw IoFailure(path.string(), "cannot be written: its folder does not exist; make the folder first");
   if (::access(folder.c_str(), W_OK) != 0)
     throw IoFailure(path.string(), "cannot be written: no permission in its folder; choose another");
+}
+
+std::string nearest_name(const std::string& word, const std::vector<std::string>& names) {
+  std::string best;
+  std::size_t least = 1 + std::max<std::size_t>(1, word.size() / 2); // a word of which more is wrong is another one
+  for (const std::string& name : names) {
+    // Levenshtein's distance, row by row.
+    std::vector<std::size_t> row(name.size() + 1);
+    for (std::size_t j = 0; j <= name.size(); ++j) row[j] = j;
+    for (std::size_t i = 0; i < word.size(); ++i) {
+      std::size_t diagonal = row[0];
+      row[0] = i + 1;
+      for (std::size_t j = 0; j < name.size(); ++j) {
+        const std::size_t replaced = diagonal + (word[i] != name[j]);
+        diagonal = row[j + 1];
+        row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+      }
+    }
+    if (row.back() < least) least = row.back(), best = name;
+  }
+  return best;
 }
 
 std::vector<double> numbers_of(const std::string& option, const std::string& text, std::size_t count) {

@@ -8,10 +8,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace pith::cli {
 
@@ -34,19 +36,26 @@ private:
   std::unique_ptr<Watcher> watcher_;
 };
 
-/// A line on standard error that says how far work has come; nothing where that is not a terminal.
+/// Says on standard error how far work has come: on a terminal a line that changes; elsewhere one line for each part
+/// of the work that takes longer than a second.
 class ProgressLine {
 public:
-  explicit ProgressLine(bool on) : on_(on) {}
+  enum class Kind { none, bar, lines };
+  explicit ProgressLine(Kind kind) : kind_(kind) {}
   ~ProgressLine() { clear(); }
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
-  void show(const std::string& what, double fraction);
+  /// `line` is what stands for `what` where whole lines are printed; empty: `what`.
+  void show(const std::string& what, double fraction, const std::string& line = "");
   void clear();
 
 private:
-  bool on_, shown_ = false;
+  void tell(const std::string& what, const std::string& line, std::int64_t now);
+
+  Kind kind_;
+  bool shown_ = false;
   std::int64_t last_ms_ = -1;
+  std::map<std::string, std::int64_t> begun_; ///< when each part was first shown; −1: told
 };
 
 /// What a verb is run with.
@@ -56,13 +65,15 @@ struct Session {
   std::optional<std::uint64_t> seed; ///< where given, takes the place of the recipe's or the verb's own
   const Interrupt* interrupt = nullptr;
   ProgressLine* progress_line = nullptr;
+  mutable bool printed = false; ///< print has printed: an error that follows is no second object
 
-  /// Shows progress under a name and passes Ctrl-C on.
-  Progress progress(const std::string& what) const;
+  /// Shows progress under a name and passes Ctrl-C on. `line`: as for ProgressLine::show.
+  Progress progress(const std::string& what, const std::string& line = "") const;
   /// A line of ordinary output; nothing under --json or --quiet.
   void say(const std::string& line) const;
   /// The one object of --json; nothing without it.
   void print(const Json& object) const;
+  bool cancelled() const { return interrupt && interrupt->asked(); }
   /// Throws Cancelled when Ctrl-C was pressed: for work that reports no progress.
   void stop_if_asked() const;
 };
@@ -86,6 +97,9 @@ Verb shape_verb(CLI::App& program);
 /// Errors early, before long work: IoFailure when the folder of an output file does not exist or is not writable;
 /// InvalidInput when its extension is none of `extensions` (empty: any).
 void check_output(const std::filesystem::path& path, std::initializer_list<const char*> extensions);
+
+/// The name among `names` that is spelt most like `word`; empty where none is near.
+std::string nearest_name(const std::string& word, const std::vector<std::string>& names);
 
 /// "x,y,z" and the like: `count` finite numbers. Errors: CLI::ValidationError (wrong usage), naming the option.
 std::vector<double> numbers_of(const std::string& option, const std::string& text, std::size_t count);

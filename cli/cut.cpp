@@ -124,11 +124,15 @@ Verb cut_verb(CLI::App& program) {
                    "S.json: {\"points\": [[u, v], ...], \"view\": {...}}, or any cut of a recipe"},
         std::tuple{"--only", &options->only, "x,y,z: cut only the piece that holds this rest point"}})
     app->add_option(name, *into, text)->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  app->add_option("--keep", options->keep, "both, left or right")->check(CLI::IsMember({"both", "left", "right"}));
+  app->add_option("--keep", options->keep, "both, left or right")
+      ->check(CLI::IsMember({"both", "left", "right"}))
+      ->capture_default_str();
   app->add_option("--spread", options->spread, "mm by which the halves are moved apart")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   app->add_option("--snap", options->snap, "fraction of an edge, 0 to 0.4, within which a cut snaps to vertices")
-      ->check(CLI::Range(0.0, 0.4));
+      ->check(CLI::Range(0.0, 0.4))
+      ->capture_default_str();
   return {app, [app, options](const Session& session) { run(*app, *options, session); }};
 }
 

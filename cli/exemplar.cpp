@@ -48,7 +48,9 @@ Verb exemplar_verb(CLI::App& program) {
   CLI::App* app = program.add_subcommand("exemplar", "make a solid texture: " + joined(procedural_names()));
   app->add_option("name", options->name, joined(procedural_names()))->required();
   app->add_option("-o,--output", options->output, "FILE.exemplar, or .npy for bare texels")->required();
-  app->add_option("--resolution", options->resolution, "texels along each axis")->check(CLI::Range(16, 512));
+  app->add_option("--resolution", options->resolution, "texels along each axis")
+      ->check(CLI::Range(16, 512))
+      ->capture_default_str();
   return {app, [options](const Session& session) { run(*options, session); }};
 }
 

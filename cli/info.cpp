@@ -45,11 +45,13 @@ Json add_quality(const std::filesystem::path& file, Json& pieces, const Session&
     entry["triangles"] = report.triangles;
     entry["watertight"] = report.watertight();
     entry["manifold"] = report.manifold();
-    entry["minimum_dihedral"] = report.minimum_dihedral;
-    session.say(fmt::format("  piece {}: {} triangles, {}, {}, smallest dihedral of a cut tet {:.3f}°", piece,
-                            report.triangles, report.watertight() ? "watertight" : "NOT watertight",
-                            report.manifold() ? "manifold" : "not manifold",
-                            report.minimum_dihedral * 57.29577951308232));
+    const bool any_cut = report.cut_tets > 0;
+    if (any_cut) entry["minimum_dihedral"] = report.minimum_dihedral;
+    session.say(fmt::format(
+        "  piece {}: {} triangles, {}, {}{}", piece, report.triangles,
+        report.watertight() ? "watertight" : "NOT watertight", report.manifold() ? "manifold" : "not manifold",
+        any_cut ? fmt::format(", smallest dihedral of a cut tet {:.3f}°", report.minimum_dihedral * 57.29577951308232)
+                : ""));
   }
   return quality_of(std::move(model), session);
 }
@@ -231,8 +233,14 @@ void run(const InfoOptions& options, const Session& session) {
   if (extension == "obj" || extension == "off" || extension == "ply" || extension == "stl")
     return mesh_info(options, session);
   if (is_image_path(options.file)) return image_info(options, session);
-  throw InvalidInput(options.file.string(), "is of no kind that pith knows",
-                     "give a .pith, .exemplar, .json, .npy, .obj, .off, .ply, .stl or an image");
+  const std::string known = "info reads .pith, .exemplar, .json, .npy, .obj, .off, .ply, .stl and images";
+  for (const auto& [name, what] : {std::pair{"vdb", "OpenVDB grids; `vdb_print` of OpenVDB tells what is in them"},
+                                   {"vtu", "tets for ParaView"},
+                                   {"glb", "a glTF surface for viewers and Blender"}})
+    if (extension == name)
+      throw InvalidInput(options.file.string(), std::string("is written by `pith export` but not read: ") + what,
+                         known);
+  throw InvalidInput(options.file.string(), "is of no kind that pith knows", known);
 }
 
 } // namespace

@@ -114,7 +114,8 @@ Verb make_verb(CLI::App& program) {
   app->add_option("-o,--output", options->output, "the model to write, MODEL.pith")->required();
   app->add_option("--cache", options->cache, "folder for results of stages (default: XDG_CACHE_HOME/pith)");
   app->add_option("--cache-gigabytes", options->cache_gigabytes, "most that the folder may hold")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
   app->add_flag("--no-cache", options->no_cache, "neither read nor write remembered results");
   return {app, [options](const Session& session) { run(*options, session); }};
 }

@@ -60,6 +60,13 @@ void write_picture(const RenderVerbOptions& options, const Film& film, const Ton
   write_image(options.output, color, {}, layers);
 }
 
+/// Samples that every pixel has.
+std::uint32_t least_samples(const Film& film) {
+  std::uint32_t least = film.pixel.empty() ? 0 : film.pixel.front().samples;
+  for (const FilmPixel& pixel : film.pixel) least = std::min(least, pixel.samples);
+  return least;
+}
+
 void run(const CLI::App& app, const RenderVerbOptions& options, const Session& session) {
   const auto start = std::chrono::steady_clock::now();
   check_output(options.output, {"png", "exr", "jpg", "hdr", "tif"});
@@ -87,6 +94,12 @@ void run(const CLI::App& app, const RenderVerbOptions& options, const Session& s
   FramingOptions framing{.direction = scene_file.direction, .aspect = static_cast<double>(width) / height};
   if (scene_file.vertical_angle) framing.vertical_angle = *scene_file.vertical_angle;
   const View view = scene_file.view ? *scene_file.view : framed_view(scene, framing);
+  const double share = section_share(scene, view);
+  constexpr double well_seen = 0.2; // two halves that face one another show 0.3 and more where nothing hides them
+  if (!scene_file.view && framing.direction.isZero() && share < well_seen)
+    session.say(
+        "note: the sections are mostly hidden in every view; spread the halves further (cut --spread), keep one "
+        "of them (--keep), or lay them down with \"moves\" in the recipe");
 
   RenderOptions render_options;
   render_options.width = width;
@@ -99,13 +112,18 @@ void run(const CLI::App& app, const RenderVerbOptions& options, const Session& s
   if (session.seed) render_options.seed = *session.seed;
   render_options.background = scene_file.background;
   const auto begin = std::chrono::steady_clock::now();
-  const Progress progress = session.progress("render");
+  render_options.keep_when_cancelled = true;
+  const Progress progress = session.progress(
+      "render", fmt::format("rendering {} × {} pixels, {}", width, height,
+                            render_options.samples < 1 << 20 ? fmt::format("{} samples each", render_options.samples)
+                                                             : fmt::format("for {} s", options.time)));
   const Film film = render(scene, view, lights_of(scene_file, scene, view), render_options, progress);
   const double rendering = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  session.stop_if_asked();
+  const std::uint32_t samples = least_samples(film);
   write_picture(options, film, scene_file.tone);
-
-  const std::uint32_t samples = film.pixel.empty() ? 0 : film.pixel.front().samples;
+  if (session.cancelled())
+    throw std::runtime_error(fmt::format("{}: cancelled after {} samples per pixel; the picture shows these",
+                                         options.output.string(), samples));
   session.say(fmt::format("{}: {} × {} pixels, {} samples each, {:.2f} s", options.output.string(), width, height,
                           samples, rendering));
   session.print({{"output", options.output.string()},
@@ -113,6 +131,7 @@ void run(const CLI::App& app, const RenderVerbOptions& options, const Session& s
                  {"height", height},
                  {"samples", samples},
                  {"triangles", scene.triangle_count()},
+                 {"section_share", share},
                  {"rendering_seconds", rendering},
                  {"seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()},
                  {"view",
@@ -127,19 +146,26 @@ void run(const CLI::App& app, const RenderVerbOptions& options, const Session& s
 
 Verb render_verb(CLI::App& program) {
   auto options = std::make_shared<RenderVerbOptions>();
-  CLI::App* app = program.add_subcommand("render", "path-trace a picture of a model");
+  CLI::App* app = program.add_subcommand(
+      "render", "path-trace a picture of a model; Ctrl-C keeps the picture of the passes that are finished");
   app->add_option("model", options->model, "MODEL.pith")->required();
   app->add_option("-o,--output", options->output,
                   "IMAGE.png, .exr (with albedo, normal, depth ...), .jpg, .hdr or .tif")
       ->required();
-  app->add_option("--size", options->size, "WIDTHxHEIGHT in pixels");
-  app->add_option("--spp", options->samples, "samples per pixel")->check(CLI::Range(1, 1 << 20));
-  app->add_option("--time", options->time, "seconds after which no further pass starts")->check(CLI::PositiveNumber);
-  app->add_option("--scene", options->scene, "light, ground, background and view: SCENE.json");
+  app->add_option("--size", options->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  app->add_option("--spp", options->samples, "samples per pixel; with --time alone: as many as it allows")
+      ->check(CLI::Range(1, 1 << 20))
+      ->capture_default_str();
+  app->add_option("--time", options->time,
+                  "seconds after which no further pass of 16 samples starts (default: no limit)")
+      ->check(CLI::PositiveNumber);
+  app->add_option("--scene", options->scene,
+                  "light, ground, background and view: SCENE.json (default: a soft studio light)");
   app->add_option("--view", options->view,
                   "where to look from, VIEW.json; otherwise the recipe's, or one that shows all");
-  app->add_option("--direction", options->direction, "x,y,z: look from there, framed to show all");
-  app->add_option("--exposure", options->exposure, "stops");
+  app->add_option("--direction", options->direction,
+                  "x,y,z: look from there, framed to show all (default: where the sections are seen best)");
+  app->add_option("--exposure", options->exposure, "stops")->capture_default_str();
   app->add_flag("--transparent", options->transparent, "no background: alpha");
   return {app, [app, options](const Session& session) { run(*app, *options, session); }};
 }

@@ -111,7 +111,8 @@ Verb sample_verb(CLI::App& program) {
   app->add_option("points", options->points, "n × 3 numbers, rest space, mm: POINTS.npy")->required();
   app->add_option("-o,--output", options->output, "n × channels float32, linear; NaN outside: OUT.npy")->required();
   app->add_option("--footprint", options->footprint, "mm to filter over; 0: the exact value at the point")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   return {app, [options](const Session& session) { run(*options, session); }};
 }
 

@@ -38,7 +38,9 @@ Verb shape_verb(CLI::App& program) {
   CLI::App* app = program.add_subcommand("shape", "make a closed surface: " + names);
   app->add_option("name", options->name, names)->required();
   app->add_option("-o,--output", options->output, "FILE.obj, .off, .ply or .stl")->required();
-  app->add_option("--triangles", options->triangles, "about how many")->check(CLI::Range(100, 2'000'000));
+  app->add_option("--triangles", options->triangles, "about how many")
+      ->check(CLI::Range(100, 2'000'000))
+      ->capture_default_str();
   return {app, [options](const Session& session) { run(*options, session); }};
 }
 

@@ -16,7 +16,8 @@ using testing::write_text;
 class BadInput : public ::testing::Test {
 protected:
   /// The command fails as it should, naming `what`, and the folder is as it was.
-  void expect_refused(const std::vector<std::string>& command, const std::string& what) {
+  void expect_refused(std::vector<std::string> command, const std::string& what) {
+    command.push_back("--quiet"); // on a slow machine progress takes lines of its own
     const auto before = program.files();
     const Outcome outcome = program.run(command);
     EXPECT_EQ(outcome.code, 1) << outcome.complaint << outcome.output;
@@ -40,7 +41,7 @@ protected:
   void expect_made_or_refused(const std::string& surface) {
     write_recipe(surface);
     const auto before = program.files();
-    const Outcome outcome = program.run({"make", "r.json", "-o", "out.pith"});
+    const Outcome outcome = program.run({"make", "r.json", "-o", "out.pith", "--quiet"});
     if (outcome.code == 0) {
       EXPECT_EQ(outcome.complaint, "");
       const Outcome check = program.run({"check", "out.pith", "--points", "1000"});
@@ -152,6 +153,10 @@ TEST_F(BadInput, Recipes) {
   refused(with(with(solid, "STROKE", "-9"), "EXEMPLAR", R"({"file": "foreign.exemplar"})"), "foreign.exemplar");
   refused(with(with(solid, "STROKE", "-999"), "EXEMPLAR", R"({"procedural": "kiwi", "resolution": 16})"),
           "r.json: /solids/0/depth");
+  // A surface in metres, strokes in millimetres.
+  write_tri_mesh(program.folder / "ball.obj", testing::sphere_surface(2, 0.02));
+  refused(with(with(solid, "STROKE", "-9"), "EXEMPLAR", R"({"procedural": "kiwi", "resolution": 16})"),
+          "\"surface\": {\"scale\": 1000}");
 }
 
 TEST_F(BadInput, Models) {
@@ -176,6 +181,13 @@ TEST_F(BadInput, Models) {
   expect_refused({"cut", "damaged.pith", "--plane", "1,0,0,0", "-o", "out.pith"}, "damaged.pith");
 
   expect_refused({"cut", "ball.pith", "--plane", "1,0,0,99", "-o", "out.pith"}, "cut 1 of 1");
+  const std::string once = program.run({"cut", "ball.pith", "--plane", "1,0,0,99", "-o", "out.pith"}).complaint;
+  EXPECT_EQ(once.find("move the cut"), once.rfind("move the cut")) << once;
+  EXPECT_NE(once.find("cannot be made: nothing is cut"), std::string::npos) << once;
+  for (const char* name : {"a.vdb", "a.vtu", "a.glb"}) {
+    write_text(program.folder / name, "anything");
+    expect_refused({"info", name}, "info reads .pith");
+  }
   expect_refused({"cut", "ball.pith", "--plane", "1,0,0,1", "--only", "0,0,99", "-o", "out.pith"},
                  "lies outside the solid");
   expect_refused({"cut", "ball.pith", "--plane", "1,0,0,1", "-o", "out.obj"}, "out.obj: has the extension .obj");

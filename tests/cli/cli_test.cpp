@@ -108,6 +108,11 @@ TEST_F(Cli, InfoAnswersFastAndInFull) {
   const json quality = run({"info", "ball.pith", "--quality"});
   EXPECT_EQ(quality["pieces"][0]["watertight"], true);
   EXPECT_EQ(quality["pieces"][0]["manifold"], true);
+  EXPECT_FALSE(quality["pieces"][0].contains("minimum_dihedral")); // no tet is cut
+  run({"cut", "ball.pith", "--plane", "0,0,1,1", "-o", "cut.pith"});
+  const double dihedral = run({"info", "cut.pith", "--quality"})["pieces"][0]["minimum_dihedral"];
+  EXPECT_GT(dihedral, 0);
+  EXPECT_LT(dihedral, 1.3);
   const json mesh = run({"info", "ball.obj"});
   EXPECT_EQ(mesh["triangles"], 512);
   EXPECT_EQ(run({"info", "ball.json"})["kind"], "recipe");
@@ -180,6 +185,17 @@ TEST_F(Cli, ExportsAndPictures) {
   for (const char* name : {"out.ply", "out.obj", "out.stl", "out.glb", "out.vtu", "out.vdb"}) {
     const json said = run({"export", "cut.pith", "-o", name});
     EXPECT_GT(said["bytes"], 1000) << name;
+    if (std::string(name) == "out.ply" || std::string(name) == "out.obj") {
+      const TriMesh written = read_tri_mesh(program.folder / name);
+      EXPECT_EQ(said["vertices"], written.vertex_count()) << name;
+      EXPECT_EQ(said["triangles"], written.triangle_count()) << name;
+    }
+    if (std::string(name) == "out.vtu") {
+      const std::string head = bytes(name).substr(0, 1000);
+      EXPECT_NE(head.find("NumberOfPoints=\"" + std::to_string(std::size_t(said["vertices"])) + "\""),
+                std::string::npos);
+      EXPECT_NE(head.find("NumberOfCells=\"" + std::to_string(std::size_t(said["tets"])) + "\""), std::string::npos);
+    }
   }
   const TriMesh surface = read_tri_mesh(program.folder / "out.stl");
   EXPECT_TRUE(surface_defects(surface).clean()) << surface_defects(surface).summary();
@@ -196,6 +212,103 @@ TEST_F(Cli, ExemplarsAndShapes) {
   EXPECT_EQ(run({"info", "kiwi.exemplar"})["size"], (json{16, 16, 16}));
   run({"shape", "kiwi", "-o", "kiwi.obj", "--triangles", "2000"});
   EXPECT_EQ(run({"check", "kiwi.obj"})["clean"], true);
+}
+
+/// Scripts ask `check` whether a surface keeps its shape.
+TEST_F(Cli, CheckOfSurfaces) {
+  const TriMesh ball = testing::sphere_surface(2, 20);
+  const auto verdict = [&](const TriMesh& mesh, const std::string& words, int code) {
+    write_tri_mesh(program.folder / "surface.off", mesh);
+    const Outcome outcome = program.run({"check", "surface.off", "--json"});
+    EXPECT_EQ(outcome.code, code) << words;
+    EXPECT_EQ(outcome.complaint_lines(), code == 0 ? 0u : 1u) << outcome.complaint;
+    const json object = json::parse(outcome.output, nullptr, false); // one object, also where it fails
+    EXPECT_EQ(object["verdict"], words);
+    EXPECT_EQ(object["usable"], code == 0);
+    return object;
+  };
+  EXPECT_EQ(verdict(ball, "clean", 0)["unit_hint"], "");
+  TriMesh open = ball;
+  open.corner.pop_back();
+  EXPECT_EQ(verdict(open, "mendable", 0)["moved"], 0);
+  verdict(testing::inside_out(ball), "mendable", 0);
+  const TriMesh crossing = testing::together(ball, testing::sphere_surface(2, 20, Vec3d(13, 1, 2)));
+  EXPECT_GT(verdict(crossing, "wrap", 1)["findings"].size(), 0u);
+
+  const std::string small = verdict(testing::sphere_surface(2, 0.02), "clean", 0)["unit_hint"];
+  EXPECT_NE(small.find("in metres"), std::string::npos) << small;
+  EXPECT_NE(small.find("\"scale\": 1000"), std::string::npos) << small;
+  const std::string large = verdict(testing::sphere_surface(2, 20'000), "clean", 0)["unit_hint"];
+  EXPECT_NE(large.find("0.001"), std::string::npos) << large;
+}
+
+TEST_F(Cli, CheckOfRecipes) {
+  EXPECT_EQ(run({"check", "ball.json"})["usable"], true);
+  EXPECT_FALSE(std::filesystem::exists(program.folder / ".cache/pith")); // nothing was built
+  write_text(program.folder / "bad.json",
+             R"({"pith": 1, "surface": {"file": "ball.obj"},
+      "solids": [{"type": "2-b", "region": 1,
+        "depth": [{"triangles": [3, 99999], "value": 0}, {"stroke": [[0, 0, -800], [0, 0, -500]], "value": 1}],
+        "orientation": [{"stroke": [[0, 90, -8], [0, 90, 8]]}],
+        "exemplar": {"file": "gone.exemplar"}}],
+      "cuts": [{"plane": {"normal": [0, 0, 1], "offset": 33}}], "scene": "gone_scene.json"})");
+  const Outcome outcome = program.run({"check", "bad.json", "--json"});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_EQ(outcome.complaint_lines(), 1u);
+  const json object = json::parse(outcome.output, nullptr, false);
+  std::string all;
+  for (const json& finding : object["findings"]) all += std::string(finding["what"]) + "\n";
+  for (const char* place : {"/solids/0/region", "/solids/0/depth/0/triangles", "/solids/0/depth/1/stroke",
+                            "/solids/0/orientation/0/stroke", "/solids/0/exemplar/file", "/cuts/0", "/scene"})
+    EXPECT_NE(all.find(std::string("bad.json: ") + place + ":"), std::string::npos) << place << " not in\n" << all;
+  EXPECT_EQ(object["findings"].size(), 7u) << all;
+}
+
+TEST_F(Cli, AnErrorIsAnObjectToo) {
+  const auto failed = [&](std::vector<std::string> command, int code, const std::string& kind) {
+    command.push_back("--json");
+    const Outcome outcome = program.run(command);
+    EXPECT_EQ(outcome.code, code);
+    EXPECT_EQ(outcome.complaint_lines(), 1u) << outcome.complaint;
+    const json object = json::parse(outcome.output, nullptr, false);
+    ASSERT_TRUE(object.is_object()) << outcome.output;
+    EXPECT_EQ("pith: " + std::string(object["error"]) + "\n", outcome.complaint);
+    EXPECT_EQ(object["kind"], kind);
+    EXPECT_EQ(object["exit_code"], code);
+  };
+  failed({"info", "gone.pith"}, 1, "file");
+  failed({"exemplar", "nothing", "-o", "a.exemplar"}, 1, "input");
+  failed({"render", "a.pith", "-o", "b.png", "--size", "10"}, 2, "usage");
+  failed({"info"}, 2, "usage");
+  failed({"infos"}, 2, "usage");
+}
+
+TEST_F(Cli, HelpTellsDefaultsAndCommonOptions) {
+  for (const auto& [verb, defaults] :
+       std::vector<std::pair<std::string, std::vector<std::string>>>{{"make", {"[2]"}},
+                                                                     {"info", {}},
+                                                                     {"check", {"[200000]"}},
+                                                                     {"cut", {"[both]", "[0]", "[0.01]"}},
+                                                                     {"sample", {"[0]"}},
+                                                                     {"render", {"[800x600]", "[64]"}},
+                                                                     {"export", {"[0.001]", "[color]"}},
+                                                                     {"exemplar", {"[128]"}},
+                                                                     {"shape", {"[20000]"}}}) {
+    const Outcome outcome = program.run({verb, "--help"});
+    EXPECT_EQ(outcome.code, 0);
+    for (const std::string& text : defaults)
+      EXPECT_NE(outcome.output.find(text), std::string::npos) << verb << " " << text << "\n" << outcome.output;
+    for (const char* common : {"--json", "--quiet", "--threads", "--seed"})
+      EXPECT_NE(outcome.output.find(common), std::string::npos) << verb << " " << common;
+  }
+}
+
+TEST_F(Cli, AnUnknownVerbIsNamedWithTheNearest) {
+  const auto said = [&](const std::vector<std::string>& command) { return program.run(command).complaint; };
+  EXPECT_NE(said({"rendr", "a.pith"}).find("there is no verb 'rendr'; did you mean 'render'?"), std::string::npos);
+  const std::string frob = said({"--threads", "2", "frob"});
+  EXPECT_NE(frob.find("there is no verb 'frob'"), std::string::npos) << frob;
+  EXPECT_NE(frob.find("exemplar"), std::string::npos) << frob;
 }
 
 TEST_F(Cli, QuietSaysNothing) {
@@ -216,7 +329,7 @@ protected:
 TEST_F(CliEnd, CtrlCLeavesNothing) {
   const auto before = program.files();
   for (const int milliseconds : {30, 400, 1200}) {
-    const Program::Process process = program.start({"make", slow, "-o", "kiwi.pith", "--no-cache"});
+    const Program::Process process = program.start({"make", slow, "-o", "kiwi.pith", "--no-cache", "--quiet"});
     std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
     ::kill(process.id, SIGINT);
     const Outcome outcome = program.finish(process);
@@ -224,6 +337,21 @@ TEST_F(CliEnd, CtrlCLeavesNothing) {
     EXPECT_EQ(outcome.complaint, "pith: cancelled\n");
     EXPECT_EQ(program.files(), before);
   }
+}
+
+TEST_F(CliEnd, CtrlCKeepsThePassesOfAPicture) {
+  make();
+  // So many samples that it cannot finish; a pass of 16 over so few pixels takes some hundredths of a second.
+  const Program::Process process =
+      program.start({"render", "ball.pith", "-o", "ball.png", "--size", "40x30", "--spp", "1000000"});
+  std::this_thread::sleep_for(std::chrono::milliseconds(3000));
+  ::kill(process.id, SIGINT);
+  const Outcome outcome = program.finish(process);
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.complaint.find("pith: ball.png: cancelled after "), std::string::npos) << outcome.complaint;
+  EXPECT_NE(outcome.complaint.find("rendering 40 × 30 pixels, 1000000 samples each …\n"), std::string::npos)
+      << outcome.complaint;
+  EXPECT_EQ(run({"info", "ball.png"})["width"], 40);
 }
 
 TEST_F(CliEnd, KillLeavesNoBrokenOutputAndAUsableCache) {

@@ -14,7 +14,7 @@ namespace pith {
 
 namespace {
 
-constexpr double seen = 0.98, covered = 254.0 / 255.0;
+constexpr double covered = 254.0 / 255.0;
 
 /// Sorts its copy.
 std::array<double, 3> median_p99_most(std::vector<int> values) {
@@ -60,7 +60,7 @@ CoverageMeasure coverage_measure(const Root& root, const CoverageOptions& option
 
   std::size_t worst = 0;
   for (std::size_t i = 0; i < options.points; ++i) {
-    measure.holes += coverage[i] < seen;
+    measure.holes += coverage[i] < options.hole;
     measure.thin += coverage[i] < covered;
     if (coverage[i] < coverage[worst]) worst = i;
   }

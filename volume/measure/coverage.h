@@ -10,11 +10,12 @@ struct CoverageOptions {
   std::size_t points = 200'000;
   std::uint64_t seed = 1;
   std::int32_t region = -1; ///< −1: all
+  double hole = 0.98;       ///< coverage below which a point counts as a hole; 0.98: what shines through is visible
 };
 
 struct CoverageMeasure {
   std::size_t points = 0;
-  std::size_t holes = 0; ///< points that more than 2 % shines through: visible
+  std::size_t holes = 0; ///< points with a coverage below CoverageOptions::hole
   std::size_t thin = 0;  ///< points that more than 1/255 shines through, holes included
   double least_coverage = 1;
   Vec3d worst = Vec3d::Zero();                               ///< where that is, rest space
