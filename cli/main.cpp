@@ -98,7 +98,7 @@ std::string wrong_verb(const std::string& word, const std::vector<Verb>& verbs) 
 constexpr const char* common_options = "Every verb also takes\n"
                                        "  --json                      one JSON object on standard output\n"
                                        "  --quiet                     nothing but errors\n"
-                                       "  --threads INT [0]           threads to use; 0: all cores\n"
+                                       "  --threads INT=0             threads to use; 0: all cores\n"
                                        "  --seed UINT                 random seed, in place of the recipe's or the "
                                        "verb's own\n"
                                        "Exit codes: 0 done, 1 bad input or failed work, 2 wrong usage, 130 Ctrl-C.";

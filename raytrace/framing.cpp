@@ -67,8 +67,9 @@ View view_around(const std::vector<Vec3d>& points, const Scene& scene, const Vec
 }
 
 /// What the eye gets to see of the sections: the sum of seen areas, turned towards the eye, mm². Where `in_picture`
-/// is set, each counts by its size in the picture instead (a share of the picture's area), and facing the eye by more
-/// than 0.85 gains nothing, because a little of the skin should be seen too.
+/// is set, each counts more the larger it is in the picture (by its length, not its area: a section should rather
+/// face the eye than stand close to it), and facing the eye by more than 0.85 gains nothing, because a little of the
+/// skin should be seen too.
 double seen_sections(const Scene& scene, const View& view, bool in_picture) {
   const double clearance = 1e-4 * scene.bounds().diagonal();
   const double half = std::tan(0.5 * view.vertical_angle);
@@ -84,7 +85,7 @@ double seen_sections(const Scene& scene, const View& view, bool in_picture) {
     const double end = view.orthographic() ? std::numeric_limits<double>::infinity() : distance;
     if (scene.occluded({start, to_eye, end})) continue;
     const double height = view.orthographic() ? view.height : 2 * half * distance; // of the picture, there
-    seen += in_picture ? std::min(facing, 0.85 * area) / (height * height) : facing;
+    seen += in_picture ? std::min(facing, 0.85 * area) / height : facing;
   }
   return seen;
 }

@@ -285,15 +285,15 @@ TEST_F(Cli, AnErrorIsAnObjectToo) {
 
 TEST_F(Cli, HelpTellsDefaultsAndCommonOptions) {
   for (const auto& [verb, defaults] :
-       std::vector<std::pair<std::string, std::vector<std::string>>>{{"make", {"[2]"}},
+       std::vector<std::pair<std::string, std::vector<std::string>>>{{"make", {"=2"}},
                                                                      {"info", {}},
-                                                                     {"check", {"[200000]"}},
-                                                                     {"cut", {"[both]", "[0]", "[0.01]"}},
-                                                                     {"sample", {"[0]"}},
-                                                                     {"render", {"[800x600]", "[64]"}},
-                                                                     {"export", {"[0.001]", "[color]"}},
-                                                                     {"exemplar", {"[128]"}},
-                                                                     {"shape", {"[20000]"}}}) {
+                                                                     {"check", {"=200000"}},
+                                                                     {"cut", {"=both", "=0", "=0.01"}},
+                                                                     {"sample", {"=0"}},
+                                                                     {"render", {"=800x600", "=64"}},
+                                                                     {"export", {"=0.001", "=color"}},
+                                                                     {"exemplar", {"=128"}},
+                                                                     {"shape", {"=20000"}}}) {
     const Outcome outcome = program.run({verb, "--help"});
     EXPECT_EQ(outcome.code, 0);
     for (const std::string& text : defaults)
