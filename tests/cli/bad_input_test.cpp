@@ -153,9 +153,9 @@ TEST_F(BadInput, Recipes) {
   refused(with(with(solid, "STROKE", "-9"), "EXEMPLAR", R"({"file": "foreign.exemplar"})"), "foreign.exemplar");
   refused(with(with(solid, "STROKE", "-999"), "EXEMPLAR", R"({"procedural": "kiwi", "resolution": 16})"),
           "r.json: /solids/0/depth");
-  // A surface in metres, strokes in millimetres.
+  // A surface in metres, strokes in millimetres that miss it.
   write_tri_mesh(program.folder / "ball.obj", testing::sphere_surface(2, 0.02));
-  refused(with(with(solid, "STROKE", "-9"), "EXEMPLAR", R"({"procedural": "kiwi", "resolution": 16})"),
+  refused(with(with(solid, "STROKE", "8"), "EXEMPLAR", R"({"procedural": "kiwi", "resolution": 16})"),
           "\"surface\": {\"scale\": 1000}");
 }
 
