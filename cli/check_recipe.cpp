@@ -2,6 +2,7 @@
 #include "cli/check.h"
 #include "cli/scene_file.h"
 #include "recipe/recipe.h"
+#include "recipe/surface_source.h"
 #include "volume/base/error.h"
 #include "volume/io/atomic_file.h"
 #include "volume/io/exemplar_io.h"
@@ -25,11 +26,13 @@ public:
   std::string hint, note; ///< about units; what make would mend
 
   void look_at_surface(const Session& session) {
-    const std::string where = "/surface/file";
-    const std::optional<std::filesystem::path> path = input(recipe_.surface.file, where);
+    const bool shape = !recipe_.surface.shape.empty();
+    const std::string where = shape ? "/surface/shape" : "/surface/file";
+    const std::optional<std::filesystem::path> path =
+        shape ? std::filesystem::path() : input(recipe_.surface.file, where);
     if (!path) return;
     try {
-      surface = read_tri_mesh(*path, recipe_.surface.scale);
+      surface = surface_of(recipe_.surface, *path);
     } catch (const std::runtime_error& error) {
       add(where, error.what(), "give a closed surface");
       return;
@@ -38,7 +41,7 @@ public:
     bounds_ = bounds_of(*surface);
     hint = unit_hint(bounds_);
     shells = surface_defects(welded(*surface)).shells;
-    const SurfacePlan plan = surface_plan(*surface, path->filename().string());
+    const SurfacePlan plan = surface_plan(*surface, surface_name(recipe_.surface));
     if (plan.way == SurfacePlan::Way::mend) note = "make will mend the surface in place: " + plan.note;
     if (plan.way == SurfacePlan::Way::wrap) {
       note = "make will wrap the surface: " + plan.note;
@@ -189,7 +192,7 @@ void check_recipe(const std::filesystem::path& path, const Session& session) {
   check.look_at_scene();
   const bool usable = check.findings.empty();
   session.say(fmt::format("{}: surface {}, {} solid(s), {} cut(s), {} move(s): {}", path.string(),
-                          recipe.surface.file, recipe.solids.size(), recipe.cuts.size(), recipe.moves.size(),
+                          surface_name(recipe.surface), recipe.solids.size(), recipe.cuts.size(), recipe.moves.size(),
                           usable ? "nothing wrong that can be seen before meshing"
                                  : fmt::format("{} finding(s)", check.findings.size())));
   for (const Finding& finding : check.findings) session.say("  " + finding.what + "; " + finding.mend);

@@ -3,6 +3,7 @@
 #include "cli/pieces_report.h"
 #include "cli/quality.h"
 #include "recipe/recipe.h"
+#include "recipe/surface_source.h"
 #include "volume/base/error.h"
 #include "volume/io/exemplar_io.h"
 #include "volume/io/image_io.h"
@@ -183,13 +184,13 @@ void exemplar_info(const InfoOptions& options, const Session& session) {
 void recipe_info(const InfoOptions& options, const Session& session) {
   const Recipe recipe = read_recipe(options.file);
   session.say(fmt::format("recipe {}: surface {}, {} divide(s), {} solid(s), {} cut(s), {} move(s)", recipe.name,
-                          recipe.surface.file, recipe.divides.size(), recipe.solids.size(), recipe.cuts.size(),
-                          recipe.moves.size()));
+                          surface_name(recipe.surface), recipe.divides.size(), recipe.solids.size(),
+                          recipe.cuts.size(), recipe.moves.size()));
   session.print({{"file", options.file.string()},
                  {"kind", "recipe"},
                  {"bytes", std::filesystem::file_size(options.file)},
                  {"name", recipe.name},
-                 {"surface", recipe.surface.file},
+                 {"surface", surface_name(recipe.surface)},
                  {"divides", recipe.divides.size()},
                  {"solids", recipe.solids.size()},
                  {"cuts", recipe.cuts.size()},

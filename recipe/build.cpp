@@ -4,10 +4,10 @@
 #include "recipe/stage_codec.h"
 #include "recipe/stage_keys.h"
 #include "recipe/steps.h"
+#include "recipe/surface_source.h"
 #include "volume/base/error.h"
 #include "volume/cut/divide.h"
 #include "volume/exemplar/procedural.h"
-#include "volume/exemplar/shapes.h"
 #include "volume/io/atomic_file.h"
 #include "volume/io/exemplar_io.h"
 #include "volume/io/mesh_io.h"
@@ -329,14 +329,10 @@ private:
   std::shared_ptr<const TetrahedralizeResult> tets() {
     return run_.result<TetrahedralizeResult>("tets", meshed_keys_[0], true, [&](const Progress& progress) {
       const auto surface = run_.result<TriMesh>("surface", surface_key_, false, [&](const Progress&) {
-        if (recipe_.surface.shape.empty()) return read_tri_mesh(surface_path_, recipe_.surface.scale);
-        TriMesh shape = named_shape(recipe_.surface.shape, recipe_.surface.triangles);
-        for (Vec3d& position : shape.position) position *= recipe_.surface.scale;
-        return shape;
+        return surface_of(recipe_.surface, surface_path_);
       });
-      TetrahedralizeResult result = tetrahedralize(
-          *surface, recipe_.surface.shape.empty() ? surface_path_.filename().string() : recipe_.surface.shape,
-          recipe_.tetrahedralize, progress);
+      TetrahedralizeResult result =
+          tetrahedralize(*surface, surface_name(recipe_.surface), recipe_.tetrahedralize, progress);
       result.surface = {};
       return result;
     });

@@ -228,7 +228,7 @@ Solid solid_from(const JsonNode& node) {
     options->optional_whole("max_centers", result.depth_options.max_centers, 10, 1'000'000,
                             "leave it out for as many as are worth while");
     if (const auto extrema = options->find("extrema"))
-      result.depth_options.keep_extrema = extrema->choice({"remove", "keep"}) == 1;
+      result.depth_options.remove_extrema = extrema->choice({"keep", "remove"}) == 1;
     options->optional_number("persistence", result.depth_options.persistence, range::fraction);
     options->optional_number("stroke_spacing", result.depth_options.stroke_spacing, range::positive_mm);
   }

@@ -53,7 +53,7 @@ KeyMaker& add(KeyMaker& maker, const std::vector<DepthConstraint>& constraints) 
 KeyMaker& add(KeyMaker& maker, const DepthOptions& options) {
   return maker.add(options.max_centers)
       .add(options.stroke_spacing)
-      .add(options.keep_extrema)
+      .add(options.remove_extrema)
       .add(options.persistence);
 }
 

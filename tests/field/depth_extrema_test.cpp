@@ -19,7 +19,9 @@ const DepthConstraint skin_is_zero{.value = 0, .skin = true, .triangles = {}, .s
 /// A boundary vertex counts as free, unless a constraint holds it.
 std::vector<DepthExtremum> extrema_in(const TetMesh& mesh, const Boundary& boundary, const DepthField& field,
                                       const std::vector<DepthConstraint>& constraints, double persistence = 0.01) {
-  return extrema_of(mesh, 0, field.value, constrained_vertices(mesh, boundary, 0, constraints, "depth"), persistence);
+  return extrema_of(mesh, 0, field.value,
+                    constrained_vertices(mesh, boundary, 0, constraints, "depth", {.remove_extrema = true}),
+                    persistence);
 }
 
 /// The vertex farthest from the boundary.
@@ -93,8 +95,8 @@ TEST(DepthExtrema, AnUndisturbedBallHasNone) {
   const Boundary boundary = boundary_of(mesh);
   const std::vector<DepthConstraint> constraints = {
       skin_is_zero, {.value = 1, .skin = false, .triangles = {}, .stroke = {{0, 0, -4}, {0, 0, 4}}}};
-  const DepthField field = depth_field(mesh, boundary, 0, constraints, "depth"),
-                   paper = depth_field(mesh, boundary, 0, constraints, "depth", {.keep_extrema = true});
+  const DepthField field = depth_field(mesh, boundary, 0, constraints, "depth", {.remove_extrema = true}),
+                   paper = depth_field(mesh, boundary, 0, constraints, "depth");
   EXPECT_EQ(field.extrema, 0u);
   EXPECT_EQ(field.value, paper.value);
 }
@@ -108,8 +110,8 @@ TEST(DepthExtrema, AreTakenAwayBeyondTheLastConstraint) {
         .value = value, .skin = false, .triangles = {}, .stroke = {{x, 0, 2}, {x, 2, 2}, {x, 2, 4}, {x, 4, 0}}};
   };
   const std::vector<DepthConstraint> constraints = {across(1, 0.2), across(6, 1), across(10, 0.7)};
-  const DepthField paper = depth_field(mesh, boundary, 0, constraints, "depth", {.keep_extrema = true}),
-                   ours = depth_field(mesh, boundary, 0, constraints, "depth");
+  const DepthField paper = depth_field(mesh, boundary, 0, constraints, "depth"),
+                   ours = depth_field(mesh, boundary, 0, constraints, "depth", {.remove_extrema = true});
   EXPECT_GT(extrema_in(mesh, boundary, paper, constraints).size(), 0u);
   EXPECT_EQ(paper.extrema, ours.extrema);
   const auto after = extrema_in(mesh, boundary, ours, constraints);
@@ -155,8 +157,8 @@ TEST_P(ConcaveMeshes, HaveNoExtremaAwayFromConstraints) {
   const std::vector<DepthConstraint> constraints = {place(vertex_at(0), 0), place(vertex_at(1), 0.3),
                                                     place(vertex_at(0.5), 0.1), place(vertex_at(0.75), 0.8),
                                                     place(innermost(meshed.mesh, boundary), 1)};
-  const DepthField paper = depth_field(meshed.mesh, boundary, 0, constraints, "depth", {.keep_extrema = true}),
-                   ours = depth_field(meshed.mesh, boundary, 0, constraints, "depth");
+  const DepthField paper = depth_field(meshed.mesh, boundary, 0, constraints, "depth"),
+                   ours = depth_field(meshed.mesh, boundary, 0, constraints, "depth", {.remove_extrema = true});
   const auto before = extrema_in(meshed.mesh, boundary, paper, constraints),
              after = extrema_in(meshed.mesh, boundary, ours, constraints);
   double largest = 0, mean = 0;

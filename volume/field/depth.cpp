@@ -164,7 +164,7 @@ DepthField depth_field(const TetMesh& mesh, const Boundary& boundary, std::int32
   });
   const PerVertex<std::uint8_t> held = held_vertices(mesh, region, places);
   field.extrema = extrema_of(mesh, region, field.value, held, options.persistence).size();
-  if (field.extrema > 0 && !options.keep_extrema) remove_extrema(mesh, region, held, basis, field);
+  if (field.extrema > 0 && options.remove_extrema) remove_extrema(mesh, region, held, basis, field);
   return field;
 }
 

@@ -34,9 +34,10 @@ struct DepthOptions {
   /// places; from there on all of them, at near linear cost (radial_basis.h).
   int max_centers = 0;
   double stroke_spacing = 0; ///< mm between samples of a stroke; 0: its length / 40
-  /// Keeps local extrema that no constraint asks for, as the paper's thin plate has them in concave solids. Otherwise
-  /// the field is changed where it must, until it rises from every free vertex and falls (monotone_depth.h).
-  bool keep_extrema = false;
+  /// Takes away local extrema that no constraint asks for, as the paper's thin plate has them in concave solids: the
+  /// field takes the slopes of a harmonic one until it rises from every free vertex and falls (monotone_depth.h).
+  /// That is another field everywhere, steep at strokes: look at the result.
+  bool remove_extrema = false;
   /// Extrema that persist by less are let be.
   double persistence = 0.01;
 };
