@@ -3,9 +3,6 @@
 #include "io_fixture.h"
 #include "volume/base/error.h"
 
-#include <csignal>
-#include <sys/resource.h>
-
 namespace pith {
 namespace {
 
@@ -86,16 +83,10 @@ TEST(AtomicFile, WritesThroughASymbolicLink) {
 TEST(AtomicFile, FullDiskIsAnErrorAndLeavesTheOldFile) {
   const Folder folder;
   write_file(folder / "x", "old");
-  // A limit on file sizes stands in for a full disk.
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  rlimit before{}, small{};
-  getrlimit(RLIMIT_FSIZE, &before);
-  small = before;
-  small.rlim_cur = 10000;
-  setrlimit(RLIMIT_FSIZE, &small);
-  EXPECT_THROW(write_file(folder / "x", std::string(100000, 'x')), IoFailure);
-  setrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, handler);
+  {
+    const testing::FullDisk full(10000);
+    EXPECT_THROW(write_file(folder / "x", std::string(100000, 'x')), IoFailure);
+  }
   EXPECT_EQ(file_content(folder / "x"), "old");
   EXPECT_EQ(folder.file_count(), 1u);
 }

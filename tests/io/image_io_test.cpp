@@ -127,6 +127,32 @@ TEST(ImageFile, FurtherLayersGoIntoExrOnly) {
   EXPECT_EQ(folder.file_count(), 1u);
 }
 
+TEST(ImageFile, FullDiskIsAnErrorAndLeavesNothing) {
+  const Folder folder;
+  Image noise(200, 200, 3); // too large for the disk in every format, however it is packed
+  Random random(7, 1);
+  for (float& value : noise.pixel) value = static_cast<float>(random.uniform(0, 1));
+  for (const char* name : {"a.png", "a.jpg", "a.exr", "a.hdr", "a.tif"}) {
+    const testing::FullDisk full(4096);
+    EXPECT_THROW(write_image(folder / name, noise), IoFailure) << name;
+    EXPECT_EQ(folder.file_count(), 0u) << name;
+  }
+}
+
+TEST(ImageFile, ADamagedPngIsRefusedWithoutAWordOfTheLibrary) {
+  const Folder folder;
+  write_image(folder / "good.png", some_image(3));
+  const std::string whole = file_content(folder / "good.png");
+  std::string damaged = whole;
+  damaged[whole.size() / 2] ^= 1;
+  for (const std::string& bytes : {whole.substr(0, whole.size() / 2), whole.substr(0, whole.size() - 1), damaged}) {
+    write_file(folder / "bad.png", bytes);
+    ::testing::internal::CaptureStderr();
+    EXPECT_THROW(read_image(folder / "bad.png"), InvalidInput);
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+  }
+}
+
 TEST(ImageFile, BadFilesAndNamesAreRefused) {
   const Folder folder;
   EXPECT_THROW(read_image(folder / "missing.png"), IoFailure);

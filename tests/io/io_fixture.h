@@ -6,9 +6,11 @@
 #include "volume/layer/model.h"
 
 #include <Eigen/Geometry>
+#include <csignal>
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <string>
+#include <sys/resource.h>
 #include <unistd.h>
 
 namespace pith::testing {
@@ -36,6 +38,27 @@ public:
 
 private:
   std::filesystem::path path_;
+};
+
+/// Files cannot grow beyond `bytes` while this lives: a stand-in for a full disk.
+class FullDisk {
+public:
+  explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit small = before_;
+    small.rlim_cur = bytes;
+    ::setrlimit(RLIMIT_FSIZE, &small);
+  }
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+private:
+  rlimit before_{};
+  void (*handler_)(int);
 };
 
 /// A ball of radius 10 mm in two regions (z below and above 0) whose flesh has the colour (x, y, z) / 25 + ½, to

@@ -28,6 +28,14 @@ TEST(VdbFile, ActiveVoxelsFillTheVolumeOfThePieces) {
   }
 }
 
+TEST(VdbFile, FullDiskIsAnErrorAndLeavesNothing) {
+  const Folder folder;
+  const Root root(ramp_model(false));
+  const testing::FullDisk full(4096);
+  EXPECT_THROW(write_vdb(folder / "a.vdb", root, whole_piece(root.model().mesh), {.voxel = 0.5}), IoFailure);
+  EXPECT_EQ(folder.file_count(), 0u);
+}
+
 TEST(VdbFile, TheVoxelFollowsTheLongestExtentUnlessItIsGiven) {
   const Folder folder;
   const Root root(ramp_model(false));

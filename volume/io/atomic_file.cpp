@@ -17,6 +17,37 @@ constexpr int attempts = 1000; // names tried beside the file; others belong to 
 
 } // namespace
 
+std::string reason_and_mend(int error_number) {
+  const auto mend = [&] {
+    switch (error_number) {
+    case ENOSPC:
+    case EDQUOT:
+      return "free some space, or write to another disk";
+    case EFBIG:
+      return "raise the limit on file sizes, or write to another disk";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return "change its permissions, or choose another place";
+    case ENOENT:
+    case ENOTDIR:
+    case ENAMETOOLONG:
+    case ELOOP:
+      return "check the path";
+    case EISDIR:
+      return "name a file";
+    case EMFILE:
+    case ENFILE:
+      return "close other programs, or raise the limit on open files";
+    case ENOMEM:
+      return "free memory";
+    default:
+      return "check the disk and the path";
+    }
+  };
+  return std::string(std::strerror(error_number)) + "; " + mend();
+}
+
 AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)) {
   std::error_code error;
   const auto status = std::filesystem::status(path_, error);
@@ -27,7 +58,7 @@ AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)) {
     const auto target = std::filesystem::weakly_canonical(path_, error);
     if (!error) path_ = target;
   }
-  if (path_.filename().empty()) throw IoFailure(path_.string(), "names no file");
+  if (path_.filename().empty()) throw IoFailure(path_.string(), "names no file; give one");
 
   const std::filesystem::path folder = path_.has_parent_path() ? path_.parent_path() : ".";
 #ifdef O_TMPFILE
@@ -53,7 +84,7 @@ void AtomicFile::make_beside(const Make& make) {
   }
   const int reason = errno;
   beside_.clear();
-  throw IoFailure(path_.string(), std::string("cannot be written: ") + std::strerror(reason));
+  throw IoFailure(path_.string(), "cannot be written: " + reason_and_mend(reason));
 }
 
 const std::filesystem::path& AtomicFile::beside() {
@@ -77,8 +108,7 @@ void AtomicFile::write(const void* data, std::size_t bytes) {
     const ssize_t written = ::write(descriptor_, at, bytes);
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0)
-      throw IoFailure(path_.string(),
-                      std::string("cannot be written: ") + std::strerror(written < 0 ? errno : ENOSPC));
+      throw IoFailure(path_.string(), "cannot be written: " + reason_and_mend(written < 0 ? errno : ENOSPC));
     at += written;
     bytes -= static_cast<std::size_t>(written);
   }
@@ -91,12 +121,12 @@ void AtomicFile::commit() {
   descriptor_ = -1;
   if (closed != 0) {
     ::unlink(beside_.c_str());
-    throw IoFailure(path_.string(), std::string("cannot be written: ") + std::strerror(reason));
+    throw IoFailure(path_.string(), "cannot be written: " + reason_and_mend(reason));
   }
   if (std::rename(beside_.c_str(), path_.c_str()) != 0) {
     const int refused = errno;
     ::unlink(beside_.c_str());
-    throw IoFailure(path_.string(), std::string("cannot be put in place: ") + std::strerror(refused));
+    throw IoFailure(path_.string(), "cannot be put in place: " + reason_and_mend(refused));
   }
 }
 
@@ -108,7 +138,7 @@ void write_file(const std::filesystem::path& path, std::string_view bytes) {
 
 std::string file_content(const std::filesystem::path& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) throw IoFailure(path.string(), std::string("cannot be opened: ") + std::strerror(errno));
+  if (descriptor < 0) throw IoFailure(path.string(), "cannot be opened: " + reason_and_mend(errno));
   std::string content;
   struct stat about {};
   if (::fstat(descriptor, &about) == 0 && S_ISREG(about.st_mode)) content.reserve(std::size_t(about.st_size) + 1);
@@ -120,7 +150,7 @@ std::string file_content(const std::filesystem::path& path) {
     if (got < 0) {
       const int reason = errno;
       ::close(descriptor);
-      throw IoFailure(path.string(), std::string("cannot be read: ") + std::strerror(reason));
+      throw IoFailure(path.string(), "cannot be read: " + reason_and_mend(reason));
     }
     if (got == 0) break;
     filled += static_cast<std::size_t>(got);

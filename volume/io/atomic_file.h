@@ -35,6 +35,10 @@ private:
   int descriptor_ = -1;
 };
 
+/// What the system says about an error number, and how to mend it: "No space left on device; free some space, or
+/// write to another disk".
+std::string reason_and_mend(int error_number);
+
 /// The whole content at once.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 

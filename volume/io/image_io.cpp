@@ -83,20 +83,20 @@ Image read_image(const std::filesystem::path& path) { return read_image(path, {}
 Image read_image(const std::filesystem::path& path, const ReadImageOptions& options) {
   const std::string where = path.string();
   std::error_code error;
-  if (!std::filesystem::exists(path, error)) throw IoFailure(where, "there is no such file");
-  if (!std::filesystem::is_regular_file(path, error)) throw IoFailure(where, "is not a file");
+  if (!std::filesystem::exists(path, error)) throw IoFailure(where, "there is no such file; check its name");
+  if (!std::filesystem::is_regular_file(path, error)) throw IoFailure(where, "is not a file; name one");
   if (std::filesystem::file_size(path, error) == 0)
     throw InvalidInput(where, "is empty", "give a PNG, JPEG, EXR, HDR or TIFF image");
 
   const auto read =
-      reinterpret_cast<image_module::ReadFunction*>(module_function(module_file, "pith_read_image_1", purpose));
+      reinterpret_cast<image_module::ReadFunction*>(module_function(module_file, "pith_read_image_2", purpose));
   const auto release =
-      reinterpret_cast<image_module::ReleaseFunction*>(module_function(module_file, "pith_release_image_1", purpose));
+      reinterpret_cast<image_module::ReleaseFunction*>(module_function(module_file, "pith_release_image_2", purpose));
   image_module::Read request{};
   request.path = where.c_str();
   const auto result = read(&request);
   const std::unique_ptr<float, image_module::ReleaseFunction*> pixel(request.pixel, release);
-  if (result == image_module::not_opened) throw IoFailure(where, request.message);
+  if (result == image_module::not_opened) throw IoFailure(where, std::string(request.message) + "; free memory");
   if (result != image_module::done)
     throw InvalidInput(where, std::string("is not a picture that can be read (") + request.message + ")",
                        "give a PNG, JPEG, EXR, HDR or TIFF image");
@@ -125,16 +125,16 @@ void write_image(const std::filesystem::path& path, const Image& image, const Wr
   if (options.bits != 8 && options.bits != 16)
     throw InvalidInput(where, "cannot have " + std::to_string(options.bits) + " bits", "use 8 or 16");
 
-  image_module::Write request{};
+  image_module::Encode request{};
   request.format = format.c_str();
   request.width = image.width;
   request.height = image.height;
   request.pixels_per_mm = options.pixels_per_mm;
-  request.stored = format == "png" && options.bits == 16 ? image_module::Write::word
-                   : format == "png" || format == "jpg"  ? image_module::Write::byte
-                   : format == "exr" && options.half     ? image_module::Write::half
-                                                         : image_module::Write::real;
-  const bool integers = request.stored == image_module::Write::byte || request.stored == image_module::Write::word;
+  request.stored = format == "png" && options.bits == 16 ? image_module::Encode::word
+                   : format == "png" || format == "jpg"  ? image_module::Encode::byte
+                   : format == "exr" && options.half     ? image_module::Encode::half
+                                                         : image_module::Encode::real;
+  const bool integers = request.stored == image_module::Encode::byte || request.stored == image_module::Encode::word;
   request.srgb = integers && !options.linear;
 
   int channels = image.channels;
@@ -143,10 +143,10 @@ void write_image(const std::filesystem::path& path, const Image& image, const Wr
   std::vector<std::uint8_t> bytes;
   std::vector<std::uint16_t> words;
   std::vector<float> reals;
-  if (request.stored == image_module::Write::byte) {
+  if (request.stored == image_module::Encode::byte) {
     bytes = encoded_pixels<std::uint8_t>(image, channels, options.linear);
     request.pixel = bytes.data();
-  } else if (request.stored == image_module::Write::word) {
+  } else if (request.stored == image_module::Encode::word) {
     words = encoded_pixels<std::uint16_t>(image, channels, options.linear);
     request.pixel = words.data();
   } else {
@@ -186,12 +186,17 @@ void write_image(const std::filesystem::path& path, const Image& image, const Wr
   request.channel_name = names.data();
   request.alpha = format != "hdr" && has_alpha(image.channels) && format != "jpg" ? image.channels - 1 : -1;
 
-  AtomicFile file(path);
-  request.path = file.beside().c_str();
-  const auto write =
-      reinterpret_cast<image_module::WriteFunction*>(module_function(module_file, "pith_write_image_1", purpose));
-  if (write(&request) != image_module::done)
-    throw IoFailure(where, std::string("cannot be written: ") + request.message);
+  AtomicFile file(path); // first, so that a path that cannot be written is found before the work
+  const auto encode =
+      reinterpret_cast<image_module::EncodeFunction*>(module_function(module_file, "pith_encode_image_2", purpose));
+  const auto release =
+      reinterpret_cast<image_module::ReleaseFunction*>(module_function(module_file, "pith_release_image_2", purpose));
+  const auto result = encode(&request);
+  const std::unique_ptr<unsigned char, image_module::ReleaseFunction*> content(request.bytes, release);
+  if (result != image_module::done)
+    throw IoFailure(where, std::string("cannot be encoded (") + request.message +
+                               "); ask for a smaller picture or another format");
+  file.write(content.get(), request.count);
   file.commit();
 }
 

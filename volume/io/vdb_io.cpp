@@ -11,8 +11,8 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <memory>
+#include <span>
 
 namespace pith {
 
@@ -181,12 +181,10 @@ private:
 
 /// OpenVDB gives each file a random identifier; here it is a hash of the rest, so that the same volume has the same
 /// bytes.
-void fix_identifier(const std::filesystem::path& path) {
+void fix_identifier(std::span<char> bytes, const std::string& where) {
   constexpr std::size_t at = 21, length = 36; // magic (8), three versions (4 each), a flag (1)
-  std::string bytes = file_content(path);
-  const std::string what = "the volume just written cannot be read back";
   if (bytes.size() < at + length || bytes[at + 8] != '-' || bytes[at + 23] != '-')
-    throw IoFailure(path.string(), what);
+    throw IoFailure(where, "was not encoded as this version of OpenVDB should; build or install pith again");
   std::memset(bytes.data() + at, '0', length);
   std::array<std::uint64_t, 2> hash = {1, 2};
   for (std::size_t i = 0; i < bytes.size(); i += 16) {
@@ -194,18 +192,17 @@ void fix_identifier(const std::filesystem::path& path) {
     std::memcpy(word.data(), bytes.data() + i, std::min<std::size_t>(16, bytes.size() - i));
     for (int k = 0; k < 2; ++k) hash[k] = mix_bits(hash[k] ^ word[k]);
   }
-  std::string identifier(length, '-');
+  char* const identifier = bytes.data() + at;
   constexpr const char* digits = "0123456789abcdef";
   int digit = 0;
   for (std::size_t i = 0; i < length; ++i) {
-    if (i == 8 || i == 13 || i == 18 || i == 23) continue;
+    if (i == 8 || i == 13 || i == 18 || i == 23) {
+      identifier[i] = '-';
+      continue;
+    }
     identifier[i] = digits[hash[digit / 16] >> (4 * (digit % 16)) & 15];
     ++digit;
   }
-  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
-  file.seekp(at);
-  file.write(identifier.data(), length);
-  if (!file.flush()) throw IoFailure(path.string(), what);
 }
 
 template <class Function>
@@ -246,11 +243,11 @@ VdbResult write_vdb(const std::filesystem::path& path, const Root& root, const P
   AtomicFile file(path);
   const vdb_module::Volume volume = {result.voxel * options.scale, options.density, options.color_name.c_str()};
   const auto add = function<vdb_module::AddFunction>("pith_vdb_add_1");
-  const auto write = function<vdb_module::WriteFunction>("pith_vdb_write_1");
+  const auto encode = function<vdb_module::EncodeFunction>("pith_vdb_encode_2");
   const std::unique_ptr<vdb_module::Grids, vdb_module::EndFunction*> grids(
       function<vdb_module::BeginFunction>("pith_vdb_begin_1")(&volume),
       function<vdb_module::EndFunction>("pith_vdb_end_1"));
-  if (!grids) throw IoFailure(where, "does not fit into memory");
+  if (!grids) throw IoFailure(where, "does not fit into memory; ask for larger voxels (--voxel)");
 
   Voxeliser voxeliser(root, pieces, result.voxel);
   if (!voxeliser.bounds().empty()) voxeliser.gather();
@@ -267,12 +264,16 @@ VdbResult write_vdb(const std::filesystem::path& path, const Root& root, const P
       if (kept != i) leaf[kept] = leaf[i];
       ++kept;
     }
-    if (add(grids.get(), leaf.data(), kept) != 0) throw IoFailure(where, "does not fit into memory");
+    if (add(grids.get(), leaf.data(), kept) != 0)
+      throw IoFailure(where, "does not fit into memory; ask for larger voxels (--voxel)");
   }
   char message[512] = {};
-  if (write(grids.get(), file.beside().c_str(), message) != 0)
-    throw IoFailure(where, std::string("cannot be written: ") + message);
-  fix_identifier(file.beside());
+  char* bytes = nullptr;
+  std::uint64_t count = 0;
+  if (encode(grids.get(), &bytes, &count, message) != 0)
+    throw IoFailure(where, std::string("cannot be encoded (") + message + "); ask for larger voxels (--voxel)");
+  fix_identifier({bytes, count}, where);
+  file.write(bytes, count);
   report(progress, 1);
   file.commit();
   return result;

@@ -26,7 +26,7 @@ namespace {
 namespace protocol = tetgen_protocol;
 
 [[noreturn]] void fail(const std::string& doing) {
-  throw IoFailure("pith-tetgen", doing + ": " + std::generic_category().message(errno));
+  throw IoFailure("pith-tetgen", doing + ": " + std::generic_category().message(errno) + "; free memory");
 }
 
 /// An open file, closed with its owner.
@@ -83,7 +83,9 @@ public:
     char* arguments[] = {name.data(), nullptr};
     const int error = ::posix_spawn(&id_, name.c_str(), &actions, nullptr, arguments, environ);
     posix_spawn_file_actions_destroy(&actions);
-    if (error != 0) throw IoFailure(name, "cannot be started: " + std::generic_category().message(error));
+    if (error != 0)
+      throw IoFailure(name, "cannot be started: " + std::generic_category().message(error) +
+                                "; free memory, or install pith again");
   }
   ~Process() {
     if (id_ <= 0) return;

@@ -15,21 +15,22 @@ struct Read {
   char message[512];
 };
 
-struct Write {
-  const char* path;   ///< where to write
+struct Encode {
   const char* format; ///< "png", "jpg", "exr", "hdr", "tif"
   int width, height, channels;
   const char* const* channel_name;
   enum { byte = 0, word = 1, real = 2, half = 3 } stored; ///< byte and word: `pixel` holds these; else float
   const void* pixel;
-  int srgb;             ///< 1: marked as sRGB
-  int alpha;            ///< index of the alpha channel, −1: none
-  double pixels_per_mm; ///< 0: not stored
+  int srgb;                 ///< 1: marked as sRGB
+  int alpha;                ///< index of the alpha channel, −1: none
+  double pixels_per_mm;     ///< 0: not stored
+  unsigned char* bytes;     ///< filled: the whole file; freed with `release`
+  unsigned long long count; ///< filled: of bytes
   char message[512];
 };
 
 using ReadFunction = Result(Read*);
-using WriteFunction = Result(Write*);
-using ReleaseFunction = void(float*);
+using EncodeFunction = Result(Encode*);
+using ReleaseFunction = void(void*);
 
 } // namespace pith::image_module

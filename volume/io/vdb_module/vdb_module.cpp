@@ -3,10 +3,12 @@
 
 #include <cstdio>
 #include <exception>
+#include <ios>
 #include <new>
-#include <openvdb/io/File.h>
+#include <openvdb/io/Archive.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Prune.h>
+#include <sstream>
 #include <string>
 
 using namespace pith::vdb_module;
@@ -16,6 +18,7 @@ struct pith::vdb_module::Grids {
   std::string color_name;
   openvdb::FloatGrid::Ptr density;
   openvdb::Vec3SGrid::Ptr color;
+  std::string file; ///< once encoded
 };
 
 namespace {
@@ -33,11 +36,19 @@ void add(Grids& grids, const Leaf& leaf) {
   grids.color->tree().addLeaf(color.release());
 }
 
-void write(Grids& grids, const char* path) {
+/// What OpenVDB's own File writes, offsets of the grids included, but into memory.
+struct MemoryFile : openvdb::io::Archive {
+  using Archive::write;
+  Ptr copy() const override { return std::make_shared<MemoryFile>(*this); }
+};
+
+void encode(Grids& grids) {
   openvdb::tools::prune(grids.density->tree());
-  openvdb::io::File file(path);
-  file.write({grids.density, grids.color});
-  file.close();
+  std::ostringstream file(std::ios::binary);
+  const openvdb::GridCPtrVec all = {grids.density, grids.color};
+  MemoryFile().write(file, all, /*seekable=*/true);
+  if (!file) throw std::bad_alloc();
+  grids.file = std::move(file).str();
 }
 
 } // namespace
@@ -76,9 +87,11 @@ PITH_EXPORT int pith_vdb_add_1(Grids* grids, const Leaf* leaf, std::uint64_t cou
   }
 }
 
-PITH_EXPORT int pith_vdb_write_1(Grids* grids, const char* path, char* message) {
+PITH_EXPORT int pith_vdb_encode_2(Grids* grids, char** bytes, std::uint64_t* count, char* message) {
   try {
-    write(*grids, path);
+    encode(*grids);
+    *bytes = grids->file.data();
+    *count = grids->file.size();
     return 0;
   } catch (const std::exception& problem) {
     const std::string text = problem.what();

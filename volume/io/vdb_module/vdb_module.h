@@ -23,8 +23,9 @@ struct Grids; ///< grids under construction
 using BeginFunction = Grids*(const Volume*);
 /// 0 when done. Each origin at most once.
 using AddFunction = int(Grids*, const Leaf* leaf, std::uint64_t count);
-/// Writes the file; 0 when done, else `message` (512 bytes) holds one line.
-using WriteFunction = int(Grids*, const char* path, char* message);
+/// The whole file in memory, which belongs to the grids; 0 when done, else `message` (512 bytes) holds one line. To
+/// be called once, at the end.
+using EncodeFunction = int(Grids*, char** bytes, std::uint64_t* count, char* message);
 using EndFunction = void(Grids*);
 
 } // namespace pith::vdb_module
