@@ -137,6 +137,7 @@ TEST(ColoredSurface, SubdivisionLeavesNoLongEdgeAndNoCrack) {
         ASSERT_LE((point_of(fine, c[i]) - point_of(fine, c[(i + 1) % 3])).norm(), max_edge * (1 + 1e-9));
   }
   EXPECT_THROW(colored_surface(scene.root, scene.pieces, {.max_edge = 0.1, .max_triangles = 20000}), InvalidInput);
+  EXPECT_THROW(colored_surface(scene.root, scene.pieces, {.max_edge = 1e-9}), InvalidInput); // at once
   EXPECT_THROW(colored_surface(scene.root, scene.pieces, {.max_edge = -1}), InvalidInput);
   EXPECT_THROW(colored_surface(scene.root, scene.pieces, {}, [](double) { return false; }), Cancelled);
 }

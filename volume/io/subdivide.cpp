@@ -3,7 +3,9 @@
 #include "volume/base/error.h"
 #include "volume/base/parallel.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cstdio>
 #include <string>
 
 namespace pith {
@@ -71,6 +73,19 @@ void split(const SurfaceFace& face, const std::array<std::uint32_t, 3>& mid, con
 void subdivide(std::vector<Vec3d>& position, std::vector<SurfaceFace>& face, double max_edge,
                std::size_t max_triangles) {
   const double longest = max_edge * max_edge;
+  const auto refuse = [&](double count) {
+    char text[96];
+    std::snprintf(text, sizeof text, "%.3g mm makes %.3g triangles or more, beyond the limit of %.3g", max_edge,
+                  count, static_cast<double>(max_triangles));
+    throw InvalidInput("max_edge", text, "give a longer edge");
+  };
+  // Without an edge that is longer, a triangle has at most the area √3/4 · max_edge²: so many parts at least.
+  double least = 0;
+  for (const SurfaceFace& f : face) {
+    const Vec3d &a = position[f.point[0]], &b = position[f.point[1]], &c = position[f.point[2]];
+    least += std::max(1.0, (b - a).cross(c - a).norm() / longest);
+  }
+  if (least > static_cast<double>(max_triangles)) refuse(least);
   const auto too_long = [&](std::uint32_t a, std::uint32_t b) {
     return (position[a] - position[b]).squaredNorm() > longest;
   };
@@ -84,11 +99,7 @@ void subdivide(std::vector<Vec3d>& position, std::vector<SurfaceFace>& face, dou
           ++parts;
         }
     if (edge.empty()) return;
-    if (parts > max_triangles)
-      throw InvalidInput("max_edge",
-                         std::to_string(max_edge) + " mm makes more than " + std::to_string(max_triangles) +
-                             " triangles",
-                         "give a longer edge");
+    if (parts > max_triangles) refuse(static_cast<double>(parts));
     std::sort(edge.begin(), edge.end());
     edge.erase(std::unique(edge.begin(), edge.end()), edge.end());
     const auto first = static_cast<std::uint32_t>(position.size());
