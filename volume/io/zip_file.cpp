@@ -11,6 +11,7 @@ namespace {
 
 // Midnight of the first of January 1980, the earliest that a zip can hold.
 constexpr zip_uint16_t fixed_date = (0 << 9) | (1 << 5) | 1, fixed_time = 0;
+constexpr std::size_t most_text = 64 << 20; // bytes; JSON that pith writes stays far below
 constexpr std::size_t header_bytes = 4096;  // enough for the header of any array that pith writes
 constexpr std::size_t deflate_ratio = 1032; // no deflated stream grows more than that
 
@@ -42,7 +43,7 @@ void ZipWriter::write(const std::filesystem::path& path) const {
   AtomicFile file(path); // first, so that a path that cannot be written is found before the work
   Error error;
   const auto check = [&](bool good) {
-    if (!good) throw IoFailure(path.string(), "cannot be packed: " + error.text());
+    if (!good) throw IoFailure(path.string(), "cannot be packed: " + error.text() + "; free memory");
   };
   // The zip is made in memory, then written: libzip's own files would have random names beside the final one.
   const auto free_source = [](zip_source_t* source) { zip_source_free(source); };
@@ -71,17 +72,17 @@ void ZipWriter::write(const std::filesystem::path& path) const {
     if (index < 0 ||
         zip_set_file_compression(zip.get(), index, packed ? ZIP_CM_DEFLATE : ZIP_CM_STORE, packed ? 1 : 0) != 0 ||
         zip_file_set_dostime(zip.get(), index, fixed_time, fixed_date, 0) != 0)
-      throw IoFailure(path.string(), std::string("cannot be packed: ") + zip_strerror(zip.get()));
+      throw IoFailure(path.string(), std::string("cannot be packed: ") + zip_strerror(zip.get()) + "; free memory");
   }
   if (zip_close(zip.get()) != 0)
-    throw IoFailure(path.string(), std::string("cannot be packed: ") + zip_strerror(zip.get()));
+    throw IoFailure(path.string(), std::string("cannot be packed: ") + zip_strerror(zip.get()) + "; free memory");
   zip.release();
 
-  if (zip_source_open(memory.get()) != 0) throw IoFailure(path.string(), "cannot be packed");
+  if (zip_source_open(memory.get()) != 0) throw IoFailure(path.string(), "cannot be packed; free memory");
   std::vector<char> block(1 << 20);
   for (;;) {
     const zip_int64_t got = zip_source_read(memory.get(), block.data(), block.size());
-    if (got < 0) throw IoFailure(path.string(), "cannot be packed");
+    if (got < 0) throw IoFailure(path.string(), "cannot be packed; free memory");
     if (got == 0) break;
     file.write(block.data(), static_cast<std::size_t>(got));
   }
@@ -106,8 +107,8 @@ ZipReader::ZipReader(const std::filesystem::path& path, std::string kind, std::s
     : path_(path.string()), kind_(std::move(kind)), mend_(std::move(mend)), handle_(std::make_unique<Handle>()) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw IoFailure(path_, "there is no such file");
-  if (!std::filesystem::is_regular_file(status)) throw IoFailure(path_, "is not a file");
+  if (!std::filesystem::exists(status)) throw IoFailure(path_, "there is no such file; check its name");
+  if (!std::filesystem::is_regular_file(status)) throw IoFailure(path_, "is not a file; name one");
   file_bytes_ = std::filesystem::file_size(path, error);
   int code = 0;
   handle_->zip = zip_open(path.c_str(), ZIP_RDONLY | ZIP_CHECKCONS, &code);
@@ -118,7 +119,7 @@ ZipReader::ZipReader(const std::filesystem::path& path, std::string kind, std::s
     zip_error_init_with_code(&reason, code);
     const std::string text = zip_error_strerror(&reason);
     zip_error_fini(&reason);
-    throw IoFailure(path_, "cannot be opened: " + text);
+    throw IoFailure(path_, "cannot be opened: " + text + "; check its permissions");
   }
   fail("is not a " + kind_ + ", or is cut off");
 }
@@ -168,7 +169,11 @@ void ZipReader::close_at_end(const std::string& name) const {
 }
 
 std::string ZipReader::text(const std::string& name) const {
-  std::string content(size_of(name), '\0');
+  const std::size_t size = size_of(name);
+  if (size > most_text)
+    fail("has " + std::to_string(size >> 20) + " MB of text in its part " + name + " where at most " +
+         std::to_string(most_text >> 20) + " MB belong");
+  std::string content(size, '\0');
   open(name);
   if (read(name, content.data(), content.size()) != content.size()) fail("is cut off in its part " + name);
   close_at_end(name);
