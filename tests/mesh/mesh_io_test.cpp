@@ -144,6 +144,11 @@ TEST_F(MeshFiles, ObjWithEverythingAtOnce) {
   EXPECT_EQ(mesh.part, (PerTriangle<std::int32_t>{0, 0, 1, 2, 0}));
 }
 
+TEST_F(MeshFiles, ObjMayBeginWithAByteOrderMark) {
+  const TriMesh mesh = read("b.obj", "\xef\xbb\xbfv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_EQ(mesh.vertex_count(), 3u);
+}
+
 TEST_F(MeshFiles, OffWithCountsOnTheFirstLineColoursAndPolygons) {
   const TriMesh mesh = read("c.off", "COFF 4 2 0 # counts\n\n0 0 0 255 0 0 255\n1 0 0\n# between\n1 1 0\n0 1 0\n"
                                      "4 0 1 2 3 0.5 0.5 0.5\n2 0 1\n");
@@ -205,6 +210,14 @@ TEST_F(MeshFiles, BadFilesAreRefusedInOneLine) {
       {"e.obj", "v 0 nan 0\n", "line 1: y is not finite"},
       {"e.obj", "v 0 1e999 0\n", "line 1: y is not finite"},
       {"e.obj", "v 0 0 0\nf 1 1\n", "a face has 2 corners"},
+      {"e.obj", "v 0 0 0\nf 1.5 1 1\n", "line 2: there is no whole number where a corner of the face belongs"},
+      {"e.obj",
+       std::string("\x7f"
+                   "ELF\2\1\1\0\0",
+                   9),
+       "holds binary data, not text"},
+      {"e.obj", "v 0 0 0\nv 1e100 0 0\nv 0 1 0\nf 1 2 3\n", "vertex 1 lies 1e+100 mm from the origin"},
+      {"e.obj", "v 0 0 0\nv 1e-100 0 0\nv 0 1e-100 0\nf 1 2 3\n", "the surface is 1e-100 mm across"},
       {"e.off", "PFF\n", "does not begin with OFF"},
       {"e.off", "OFF\n4 1 0\n0 0 0\n", "ends after 1 of 4 vertices"},
       {"e.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "names vertex 3 of 3"},

@@ -245,6 +245,29 @@ TEST(Tetrahedralize, CrossingShellsAreWrapped) {
   EXPECT_NE(result.note.find("moved by up to"), std::string::npos) << result.note;
 }
 
+TEST(Tetrahedralize, SizesBeyondWhatDoublesHoldAreRefused) {
+  for (const double radius : {1e80, 1e13, 1e-10, 1e-100}) {
+    try {
+      tetrahedralize(sphere_surface(1, radius), "sized", usual());
+      FAIL() << radius;
+    } catch (const InvalidInput& error) {
+      EXPECT_NE(std::string(error.what()).find("surface/scale"), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(Tetrahedralize, AWrapThatWouldNotEndIsRefused) {
+  TetrahedralizeOptions options = usual();
+  options.method = TetrahedralizeOptions::Method::wrap;
+  options.wrap_alpha = 1e-4;
+  try {
+    tetrahedralize(sphere_surface(2), "fine", options);
+    FAIL();
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("give a wrap_alpha above"), std::string::npos) << error.what();
+  }
+}
+
 TEST(Tetrahedralize, UnusableSurfacesAreRefusedInOneLine) {
   TriMesh nan = sphere_surface(1);
   nan.position[VertexId(4u)].z() = std::nan("");

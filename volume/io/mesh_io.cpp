@@ -3,6 +3,7 @@
 
 #include "volume/io/atomic_file.h"
 #include "volume/io/mesh_io_formats.h"
+#include "volume/mesh/surface_size.h"
 
 #include <cmath>
 
@@ -44,6 +45,7 @@ TriMesh read_tri_mesh(const std::filesystem::path& path, double scale) {
         throw InvalidInput(name, "vertex " + std::to_string(v) + " is not finite once scaled",
                            "choose another scale");
     }
+  require_usable_size(mesh, name);
   return mesh;
 }
 

@@ -37,6 +37,8 @@ public:
 
   bool at_end() const { return at_ == end_; }
   bool at_line_end() const { return at_ == end_ || *at_ == '\n' || *at_ == '\r'; }
+  bool at_space() const { return at_ != end_ && (*at_ == ' ' || *at_ == '\t'); }
+  bool at(char c) const { return at_ != end_ && *at_ == c; }
   std::size_t line() const { return line_; }
 
   /// Spaces and tabs; a backslash at the end of a line continues it.
@@ -128,6 +130,21 @@ private:
   std::size_t line_ = 1;
   std::string name_;
 };
+
+/// Some editors put a mark of three bytes before UTF-8 text.
+inline std::string_view without_byte_order_mark(std::string_view text) {
+  return text.substr(0, 3) == "\xef\xbb\xbf" ? text.substr(3) : text;
+}
+
+/// Throws InvalidInput where a text format holds bytes that no text has near its beginning.
+inline void refuse_binary(std::string_view text, const std::string& name, const char* kind) {
+  for (const char c : text.substr(0, 65536)) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 32 && byte != '\t' && byte != '\n' && byte != '\r' && byte != '\f' && byte != '\v')
+      throw InvalidInput(name, "holds binary data, not text",
+                         std::string("this is not ") + kind + ": check its extension, or export the mesh again");
+  }
+}
 
 /// Reads a number stored little- or big-endian; the caller has checked that it lies in the file.
 template <class T>

@@ -6,7 +6,8 @@
 namespace pith::mesh_format {
 
 TriMesh read_obj(std::string_view text, const std::string& name) {
-  TextCursor cursor(text, name);
+  refuse_binary(text, name, "an OBJ file");
+  TextCursor cursor(without_byte_order_mark(text), name);
   TriMesh mesh;
   std::vector<VertexId> polygon;
   std::int64_t largest = 0;         // the largest vertex number named so far, from 1
@@ -31,6 +32,8 @@ TriMesh read_obj(std::string_view text, const std::string& name) {
         largest_line = cursor.line();
       }
       polygon.push_back(VertexId(number - 1));
+      if (!cursor.at_line_end() && !cursor.at_space() && !cursor.at('/'))
+        cursor.fail("there is no whole number where a corner of the face belongs");
       cursor.skip_attached(); // "/texture/normal"
     }
     if (polygon.size() < 3) cursor.fail("a face has " + std::to_string(polygon.size()) + " corners");
@@ -52,8 +55,6 @@ TriMesh read_obj(std::string_view text, const std::string& name) {
       group[1] = cursor.rest_of_line();
     } else if (keyword == "usemtl") {
       group[2] = cursor.rest_of_line();
-    } else if (keyword.find('\0') != keyword.npos) {
-      cursor.fail("there are zero bytes in the text", "this is not an OBJ file: check its extension");
     }
   }
   if (largest > static_cast<std::int64_t>(mesh.vertex_count()))

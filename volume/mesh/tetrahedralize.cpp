@@ -6,6 +6,7 @@
 #include "volume/mesh/boundary.h"
 #include "volume/mesh/surface_defects_intersections.h"
 #include "volume/mesh/surface_plan.h"
+#include "volume/mesh/surface_size.h"
 #include "volume/mesh/tetrahedralize_regions.h"
 #include "volume/mesh/tetrahedralize_tetgen.h"
 #include "volume/mesh/tetrahedralize_wrap.h"
@@ -20,6 +21,8 @@ namespace pith {
 namespace {
 
 constexpr double most_tets = 100e6;
+constexpr double wrap_seconds = 2e-4; // per square of edge alpha: about what CGAL needs
+constexpr double patience = 600;      // seconds of wrapping that are granted under any time limit
 constexpr double most_moved =
     0.03; // of the diagonal: what cutting out faults may cost outside, before wrapping is the better way
 
@@ -49,6 +52,7 @@ void check_input(const TriMesh& mesh, const std::string& name, const Tetrahedral
       if (!mesh.position[v].allFinite())
         throw InvalidInput(name, "vertex " + std::to_string(v) + " is not finite", "export the mesh again");
     }
+  require_usable_size(mesh, name);
   const auto at_least = [&](double value, double least, const char* field) {
     if (!(value >= least) || !std::isfinite(value))
       throw InvalidInput(name, std::string(field) + " is " + short_number(value),
@@ -170,6 +174,16 @@ bool nothing_lost(const TriMesh& original, const TriMesh& mended) {
 TriMesh solid_wrap(const TriMesh& mesh, const std::string& name, const TetrahedralizeOptions& options,
                    double& alpha_used) {
   const double diagonal = bounds_of(mesh).diagonal(), offset = options.wrap_offset * diagonal;
+  // CGAL cannot be stopped, so its time is estimated: a wrap has some triangles of size alpha along the whole
+  // surface.
+  const double cells = std::min(area_of(mesh), diagonal * diagonal) / std::pow(options.wrap_alpha * diagonal, 2);
+  if (const double most = std::max(patience, options.time_limit) / wrap_seconds; cells > most)
+    throw InvalidInput(name,
+                       "a wrap with wrap_alpha " + short_number(options.wrap_alpha) + " would have about " +
+                           short_number(cells) + " triangles, more than the " + short_number(most) +
+                           " that the time limit allows",
+                       "give a wrap_alpha above " + short_number(options.wrap_alpha * std::sqrt(cells / most)) +
+                           ", or repair the surface");
   bool any = false;
   for (const double wider : {1.0, 2.0, 4.0, 8.0}) {
     alpha_used = wider * options.wrap_alpha * diagonal;

@@ -24,7 +24,8 @@ struct TetrahedralizeOptions {
   double radius_edge = 1.4;
   /// Alpha and offset of the wrap, as fractions of the bounding box diagonal.
   double wrap_alpha = 0.01, wrap_offset = 0.001;
-  /// Seconds before TetGen's process is given up.
+  /// Seconds before TetGen's process is given up. A wrap that would take longer than this (by an estimate; ten
+  /// minutes are always granted) is refused.
   double time_limit = 600;
   /// The helper program that runs TetGen; empty: `pith-tetgen` beside the running program.
   std::filesystem::path helper{};
@@ -54,10 +55,11 @@ struct TetrahedralizeResult {
 /// one around it is a region of its own (a stone in flesh); one that faces the other way is a cavity. Regions are
 /// numbered by nesting depth, then in the order of the file: with one outermost shell that is region 0.
 ///
-/// Errors: InvalidInput when the surface is empty, has NaN, has only degenerate triangles or encloses no volume, or
-/// an option makes no sense; SolverFailure when TetGen fails on the surface and on its wrap; IoFailure when the
-/// helper program is missing; Cancelled. A crash of TetGen never ends the process, and no file is left behind.
-/// Deterministic. Cost: about TetGen's (70,000 tets/s); a wrap of 20,000 triangles 2 s and more.
+/// Errors: InvalidInput when the surface is empty, has NaN, is smaller than 1e-9 mm or reaches beyond 1e12 mm, has
+/// only degenerate triangles or encloses no volume, or an option makes no sense; SolverFailure when TetGen fails on
+/// the surface and on its wrap; IoFailure when the helper program is missing; Cancelled. A crash of TetGen never ends
+/// the process, and no file is left behind. Deterministic. Cost: about TetGen's (70,000 tets/s); a wrap of 20,000
+/// triangles 2 s and more.
 TetrahedralizeResult tetrahedralize(const TriMesh& surface, const std::string& name,
                                     const TetrahedralizeOptions& options = {}, const Progress& progress = {});
 
