@@ -113,6 +113,32 @@ json json_of(const std::string& text, const std::string& file) {
   }
 }
 
+std::string plain_text(const std::string& text) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+  std::string result;
+  for (std::size_t i = 0; i < text.size();) {
+    const unsigned first = byte(i), second = byte(i + 1);
+    std::size_t length = first < 0x80                    ? 1
+                         : first >= 0xc2 && first < 0xe0 ? 2
+                         : first >= 0xe0 && first < 0xf0 ? 3
+                         : first >= 0xf0 && first < 0xf5 ? 4
+                                                         : 0;
+    for (std::size_t k = 1; k < length; ++k)
+      if ((byte(i + k) & 0xc0u) != 0x80u) length = 0;
+    // Longer forms than needed, surrogates, and what lies beyond Unicode (RFC 3629).
+    if ((first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) || (first == 0xf0 && second < 0x90) ||
+        (first == 0xf4 && second > 0x8f))
+      length = 0;
+    if (length == 1 && (first < 32 || first == 127)) length = 0;
+    if (length == 0)
+      result += '_';
+    else
+      result += text.substr(i, length);
+    i += std::max<std::size_t>(1, length);
+  }
+  return result;
+}
+
 std::string JsonNode::where() const { return path_.empty() ? file_ : file_ + ": " + path_; }
 
 void JsonNode::fail(const std::string& what, const std::string& mend) const {
@@ -199,7 +225,7 @@ Vec3d JsonNode::vector3() const {
   if (!value_->is_array() || value_->size() != 3) fail("is " + shown() + ", must be [x, y, z]", "give three numbers");
   Vec3d result;
   for (int axis = 0; axis < 3; ++axis)
-    result[axis] = JsonNode((*value_)[axis], file_, path_ + "/" + std::to_string(axis)).number();
+    result[axis] = JsonNode((*value_)[axis], file_, path_ + "/" + std::to_string(axis)).number(range::coordinate);
   return result;
 }
 
@@ -207,7 +233,7 @@ Vec2d JsonNode::vector2() const {
   if (!value_->is_array() || value_->size() != 2) fail("is " + shown() + ", must be [u, v]", "give two numbers");
   Vec2d result;
   for (int axis = 0; axis < 2; ++axis)
-    result[axis] = JsonNode((*value_)[axis], file_, path_ + "/" + std::to_string(axis)).number();
+    result[axis] = JsonNode((*value_)[axis], file_, path_ + "/" + std::to_string(axis)).number(range::coordinate);
   return result;
 }
 

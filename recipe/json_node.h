@@ -23,6 +23,8 @@ struct NumberRange {
 
 namespace range {
 inline constexpr NumberRange any{};
+/// Products of coordinates must stay within what doubles hold.
+inline constexpr NumberRange coordinate{-1e12, 1e12, false, "between -1e12 and 1e12", "give millimetres"};
 inline constexpr NumberRange positive_mm{0, std::numeric_limits<double>::infinity(), true, "positive",
                                          "give millimetres"};
 inline constexpr NumberRange mm{0, std::numeric_limits<double>::infinity(), false, "0 or more", "give millimetres"};
@@ -33,6 +35,9 @@ inline constexpr NumberRange fraction{0, 1, false, "between 0 and 1", "give a fr
 
 /// Parses text into a JSON value; refuses repeated keys. Errors: InvalidInput with line and column.
 nlohmann::json json_of(const std::string& text, const std::string& file);
+
+/// The text as UTF-8 without control characters: what is neither becomes '_'. For names that come from files.
+std::string plain_text(const std::string& text);
 
 /// One value of a document and where it stands. Refers to the document: keep that alive.
 class JsonNode {

@@ -260,7 +260,7 @@ Recipe parse_recipe(const std::string& text, const std::string& file) {
   if (const auto name = root.find("name"))
     result.name = name->text();
   else
-    result.name = std::filesystem::path(file).stem().string();
+    result.name = plain_text(std::filesystem::path(file).stem().string());
   result.surface = surface_from(root.at("surface"));
   if (const auto options = root.find("tetrahedralize")) result.tetrahedralize = tetrahedralize_from(*options);
   if (const auto divides = root.find("divide"))

@@ -266,3 +266,9 @@ TEST(Depth, RefusesContradictionsAndNamesThePlace) {
   EXPECT_THROW(depth_field(scene.mesh, scene.boundary, 7, {skin_is_zero, axis}, "x"), InvalidInput);
   EXPECT_THROW(scene.depth({skin_is_zero, axis}, {.max_centers = 2}), InvalidInput);
 }
+
+TEST(Polyline, ALengthBeyondDoublesIsRefused) {
+  const std::vector<Vec3d> stroke = {{0, 0, -1e200}, {0, 0, 1e200}};
+  EXPECT_THROW(evenly_sampled(stroke, 1), InvalidInput);
+  EXPECT_THROW(evenly_sampled(std::vector<Vec3d>{{0, 0, 0}, {0, std::nan(""), 0}}, 1), InvalidInput);
+}

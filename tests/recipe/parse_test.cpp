@@ -198,6 +198,7 @@ INSTANTIATE_TEST_SUITE_P(Recipe, RecipeMistakes, ::testing::ValuesIn(std::vector
   {"SkinFalse", "\"skin\": true", "\"skin\": false", "kiwi.json: /solids/0/depth/0/skin: is false"},
   {"SkinNumber", "\"skin\": true", "\"skin\": 1", "kiwi.json: /solids/0/depth/0/skin: is 1, must be true or false"},
   {"ShortPoint", "[0, 0, 26]], \"value\"", "[0, 26]], \"value\"", "kiwi.json: /solids/0/depth/1/stroke/1: is a list, must be [x, y, z]"},
+  {"FarPoint", "[0, 0, 26]], \"value\"", "[0, 0, 1e200]], \"value\"", "kiwi.json: /solids/0/depth/1/stroke/1/2: is 1e+200, must be between -1e12 and 1e12"},
   {"TextPoint", "[0, 0, 26]], \"value\"", "[0, \"0\", 26]], \"value\"", "kiwi.json: /solids/0/depth/1/stroke/1/1: is \"0\", must be a number"},
   {"NoOrientation", "[{\"stroke\": [[0, 0, -26], [0, 0, 26]]}]", "[]", "kiwi.json: /solids/0/orientation: has 0 entries, needs 1 or more"},
   {"StillOrientation", "[{\"stroke\": [[0, 0, -26], [0, 0, 26]]}]", "[{\"stroke\": [[0, 0, 1], [0, 0, 1]]}]", "kiwi.json: /solids/0/orientation/0/stroke: stays at one point"},

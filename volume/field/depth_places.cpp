@@ -121,6 +121,12 @@ struct Gathering {
                          "use the skin or strokes for this mesh");
     std::vector<TriangleId> wanted = triangles;
     std::sort(wanted.begin(), wanted.end());
+    const TriangleId last = *std::max_element(boundary.input.begin(), boundary.input.end());
+    if (!wanted.empty() && wanted.back() > last)
+      throw InvalidInput(name,
+                         "triangle " + std::to_string(wanted.back()) +
+                             " is named, but the last one that bounds the " + "mesh is " + std::to_string(last),
+                         "count the triangles of the surface's file from 0");
     std::size_t found = 0;
     for (const FacetId f : all_ids<FacetId>(boundary.facet_count())) {
       if (mesh.region[boundary.tet[f]] != region) continue;

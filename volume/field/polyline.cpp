@@ -1,6 +1,7 @@
 // Sampling of strokes.
 #include "volume/field/polyline.h"
 
+#include "volume/base/error.h"
 #include "volume/base/parallel.h"
 
 #include <Eigen/Geometry>
@@ -20,6 +21,8 @@ std::vector<PolylineSample> evenly_sampled(std::span<const Vec3d> polyline, doub
   std::vector<PolylineSample> samples;
   if (polyline.empty()) return samples;
   const double total = length_of(polyline);
+  if (!std::isfinite(total))
+    throw InvalidInput("stroke", "its length is beyond what can be measured", "give points near the model, in mm");
   if (!(total > 0)) return {{polyline.front(), Vec3d::Zero()}};
   constexpr double most = 1e5;
   const auto steps = static_cast<std::size_t>(std::clamp(std::ceil(total / spacing * (1 - 1e-12)), 1.0, most));

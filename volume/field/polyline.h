@@ -14,7 +14,7 @@ struct PolylineSample {
 };
 
 /// Samples at equal arc lengths, at most `spacing` apart, both ends included. One sample when the polyline has no
-/// length.
+/// length. At most 100,000 steps. Errors: InvalidInput where the length is not finite.
 std::vector<PolylineSample> evenly_sampled(std::span<const Vec3d> polyline, double spacing);
 
 double squared_distance(const Vec3d& x, const Vec3d& a, const Vec3d& b); ///< from x to the segment ab
