@@ -187,13 +187,35 @@ private:
         const Vec3d& at = mesh_.center[seeds[i]];
         throw SolverFailure(input_.where + ": the tet near (" + std::to_string(at.x()) + ", " +
                                 std::to_string(at.y()) + ", " + std::to_string(at.z()) + ") stays uncovered after " +
-                                std::to_string(attempts_[seeds[i]]) +
-                                " pastes; make the tets smaller than the texture (tetrahedralize/interior_edge)" +
-                                (traits_.uses_scale ? ", or the texture larger (scale)" : ""),
+                                std::to_string(attempts_[seeds[i]]) + " pastes; " + mend(seeds[i]),
                             *std::max_element(pastes_.coverage().shining(seeds[i]).begin(),
                                               pastes_.coverage().shining(seeds[i]).end()));
       }
     }
+  }
+
+  /// What to do about a tet that pastes do not cover: its mask is next to nothing, or it is larger than a texture.
+  std::string mend(std::uint32_t seed) const {
+    constexpr double tiny = 0.1; // texture widths: no more than the ramp at a mask's border
+    const SplotchOptions& mask = options_.splotch;
+    std::vector<std::pair<const char*, double>> sizes = {{"radius", mask.radius}};
+    if (traits_.imposed[1])
+      sizes.insert(sizes.end(), {{"radius_outer", mask.radius_outer},
+                                 {"radius_along", mask.radius_along},
+                                 {"reach_outer", mask.reach_outer},
+                                 {"reach_inner", mask.reach_inner}});
+    std::string small;
+    for (const auto& [key, size] : sizes)
+      if (size < tiny) small += std::string(small.empty() ? "" : ", ") + "mask/" + key;
+    if (!small.empty())
+      return "make the mask larger: below 0.1 texture widths it covers next to nothing (" + small + ")";
+
+    bool at_skin = false;
+    for (int i = 0; i < mesh_.corners; ++i)
+      at_skin = at_skin || mesh_.neighbor[seed * mesh_.corners + i] == Simplices::none;
+    return std::string("make the tets smaller than the texture (tetrahedralize/") +
+           (at_skin ? "boundary_edge, as it lies at the skin, and interior_edge)" : "interior_edge)") +
+           (traits_.uses_scale ? ", or the texture larger (scale)" : "");
   }
 
   Paste grown(std::uint32_t seed, GrowWorkspace& workspace) const {
