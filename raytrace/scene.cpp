@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <embree3/rtcore.h>
+#include <new>
 
 namespace pith {
 
@@ -75,7 +76,12 @@ void gather(const RTCFilterFunctionNArguments* arguments) {
 }
 
 [[noreturn]] void fail(RTCDevice device) {
-  throw SolverFailure("Embree reported error " + std::to_string(rtcGetDeviceError(device)), 0);
+  const RTCError error = rtcGetDeviceError(device);
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+  if (error == RTC_ERROR_UNSUPPORTED_CPU)
+    throw InvalidInput("this computer", "its processor lacks the instructions (AVX2) that pictures are computed with",
+                       "render on a newer one");
+  throw SolverFailure("Embree cannot hold the scene: its error " + std::to_string(error), 0);
 }
 
 void require_look(const SurfaceLook& look, const char* where) {
