@@ -133,6 +133,24 @@ std::vector<double> numbers_of(const std::string& option, const std::string& tex
   return result;
 }
 
+void refuse_odd_values(CLI::App& verb) {
+  for (CLI::Option* option : verb.get_options()) {
+    if (option->get_items_expected_max() == 0) continue; // a flag
+    const std::string type = option->get_type_name();
+    const bool real = type.starts_with("FLOAT"), count = type.starts_with("UINT");
+    const auto refused = [real, count](std::string& text) -> std::string {
+      if (text.empty()) return "the value is empty";
+      if (count && text.front() == '-') return "'" + text + "' is below 0";
+      double number = 0;
+      const char* const first = text.data() + (text.front() == '+' ? 1 : 0);
+      const auto [end, error] = std::from_chars(first, text.data() + text.size(), number);
+      if (real && error == std::errc() && !std::isfinite(number)) return "'" + text + "' is not a finite number";
+      return {};
+    };
+    option->check(CLI::Validator(refused, ""));
+  }
+}
+
 std::uint64_t peak_memory_bytes() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);

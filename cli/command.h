@@ -104,6 +104,10 @@ std::string nearest_name(const std::string& word, const std::vector<std::string>
 /// "x,y,z" and the like: `count` finite numbers. Errors: CLI::ValidationError (wrong usage), naming the option.
 std::vector<double> numbers_of(const std::string& option, const std::string& text, std::size_t count);
 
+/// Refuses, in every option of the verb, an empty value, a number that is not finite, and a sign before a count.
+/// Errors of the parser: wrong usage, naming the option.
+void refuse_odd_values(CLI::App& verb);
+
 /// The most memory that this process (or a helper that it ran) has held, bytes.
 std::uint64_t peak_memory_bytes();
 std::uint64_t helper_peak_memory_bytes();

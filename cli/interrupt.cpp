@@ -4,6 +4,7 @@
 #include <atomic>
 #include <csignal>
 #include <ctime>
+#include <system_error>
 #include <thread>
 #include <unistd.h>
 
@@ -42,11 +43,16 @@ struct Interrupt::Watcher {
 Interrupt::Interrupt() : watcher_(std::make_unique<Watcher>()) {
   const sigset_t set = watched_signals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
-  watcher_->thread = std::thread([watcher = watcher_.get()] { watcher->watch(); });
+  try {
+    watcher_->thread = std::thread([watcher = watcher_.get()] { watcher->watch(); });
+  } catch (const std::system_error&) { // no thread to be had: Ctrl-C then ends the program at once
+    pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+  }
 }
 
 Interrupt::~Interrupt() {
   // Wakes the watcher by a signal of its own, sooner than the next tick would.
+  if (!watcher_->thread.joinable()) return;
   const bool asked = watcher_->asked.exchange(false);
   watcher_->over = true;
   pthread_kill(watcher_->thread.native_handle(), SIGTERM);

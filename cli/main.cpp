@@ -5,8 +5,11 @@
 
 #include <CLI/Error.hpp>
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
+#include <exception>
 #include <new>
+#include <system_error>
 #include <unistd.h>
 #include <vector>
 
@@ -36,6 +39,27 @@ ProgressLine::Kind progress_kind(const Session& session) {
   return session.json ? ProgressLine::Kind::none : ProgressLine::Kind::lines;
 }
 
+constexpr const char* no_threads = "the system gives no more threads; free memory, or use fewer (--threads)";
+
+/// The last resort: a library that could not start its threads ends the program this way.
+[[noreturn]] void end_in_one_line() {
+  std::string message = no_threads;
+  if (const std::exception_ptr error = std::current_exception()) {
+    try {
+      std::rethrow_exception(error);
+    } catch (const std::bad_alloc&) {
+      message = "out of memory; use a coarser mesh or a smaller exemplar, or free memory";
+    } catch (const std::system_error&) {
+    } catch (const std::exception& other) {
+      message = std::string("failed: ") + other.what();
+    } catch (...) {
+      message = "failed for an unknown reason; report what you ran";
+    }
+  }
+  complain(message);
+  ::_exit(failed);
+}
+
 int run(const Verb& verb, Session& session) {
   const Interrupt interrupt;
   ProgressLine progress_line(progress_kind(session));
@@ -50,7 +74,8 @@ int run(const Verb& verb, Session& session) {
   try {
     const ThreadLimit limit(session.threads);
     verb.run(session);
-    if (std::fflush(stdout) != 0) throw IoFailure("standard output", "cannot be written");
+    if (std::fflush(stdout) != 0)
+      throw IoFailure("standard output", "cannot be written; free some space, or write elsewhere");
     return done;
   } catch (const CLI::ParseError& error) {
     return end("usage", std::string(error.what()) + " (pith " + verb.app->get_name() + " --help)", wrong_usage);
@@ -64,6 +89,8 @@ int run(const Verb& verb, Session& session) {
     return end("file", error.what(), failed);
   } catch (const SolverFailure& error) {
     return end("solver", error.what(), failed);
+  } catch (const std::system_error&) {
+    return end("memory", no_threads, failed);
   } catch (const std::exception& error) {
     return end("other", error.what(), failed);
   }
@@ -106,6 +133,8 @@ constexpr const char* common_options = "Every verb also takes\n"
 } // namespace
 
 int main(int argc, char** argv) {
+  std::set_terminate(end_in_one_line);
+  std::signal(SIGXFSZ, SIG_IGN); // a file that grows beyond its limit is an error like a full disk
   CLI::App program("pith: solids that are made of something all the way through", "pith");
   program.require_subcommand(1);
   program.fallthrough();
@@ -122,6 +151,8 @@ int main(int argc, char** argv) {
   for (const auto& verb :
        {make_verb, info_verb, check_verb, cut_verb, sample_verb, render_verb, export_verb, exemplar_verb, shape_verb})
     verbs.push_back(verb(program));
+  refuse_odd_values(program);
+  for (const Verb& verb : verbs) refuse_odd_values(*verb.app);
   for (const Verb& verb : verbs) verb.app->footer(common_options);
   const auto refuse_usage = [&](const std::string& message) {
     complain(message);

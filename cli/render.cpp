@@ -9,7 +9,9 @@
 #include "volume/io/model_io.h"
 
 #include <chrono>
+#include <cmath>
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace pith::cli {
 namespace {
@@ -29,6 +31,19 @@ std::array<int, 2> size_of(const std::string& text) {
   if (!read || width < 1 || height < 1 || width > 32768 || height > 32768)
     throw CLI::ValidationError("--size", "'" + text + "' is not WIDTHxHEIGHT, such as 800x600");
   return {width, height};
+}
+
+/// Errors before long work: InvalidInput where the picture cannot fit into the memory of this computer.
+void require_memory(int width, int height) {
+  // The film, and beside it the picture, its layers and what is encoded of them.
+  constexpr double each = sizeof(FilmPixel) + 2.5 * sizeof(float) * 16;
+  const double needed = each * width * height;
+  const double there = double(::sysconf(_SC_PHYS_PAGES)) * double(::sysconf(_SC_PAGESIZE));
+  if (there > 0 && needed > there)
+    throw InvalidInput("--size",
+                       fmt::format("{} × {} pixels need {:.1f} GB of memory, and this computer has {:.1f} GB", width,
+                                   height, needed / 1e9, there / 1e9),
+                       fmt::format("give {:.0f} million pixels or fewer", std::floor(there / each / 1e6)));
 }
 
 Lights lights_of(const SceneFile& scene, const Scene& ready, const View& view) {
@@ -71,6 +86,7 @@ void run(const CLI::App& app, const RenderVerbOptions& options, const Session& s
   const auto start = std::chrono::steady_clock::now();
   check_output(options.output, {"png", "exr", "jpg", "hdr", "tif"});
   const auto [width, height] = size_of(options.size);
+  require_memory(width, height);
   SceneFile scene_file;
   if (!options.scene.empty())
     scene_file =

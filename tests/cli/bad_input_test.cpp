@@ -153,6 +153,16 @@ TEST_F(BadInput, Recipes) {
   refused(with(with(solid, "STROKE", "-9"), "EXEMPLAR", R"({"file": "foreign.exemplar"})"), "foreign.exemplar");
   refused(with(with(solid, "STROKE", "-999"), "EXEMPLAR", R"({"procedural": "kiwi", "resolution": 16})"),
           "r.json: /solids/0/depth");
+  refused(with(with(solid, "STROKE", "-1e200"), "EXEMPLAR", R"({"procedural": "kiwi", "resolution": 16})"),
+          "/solids/0/depth/1/stroke/0/2: is -1e+200, must be between");
+  refused(with(with(with(solid, R"({"skin": true, "value": 0})",
+                         R"({"skin": true, "value": 0}, {"triangles": [1, 99999], "value": 0})"),
+                    "STROKE", "-9"),
+               "EXEMPLAR", R"({"procedural": "kiwi", "resolution": 16})"),
+          "triangle 99999 is named");
+  refused(with(with(solid, "STROKE", "-9"), "EXEMPLAR",
+               R"({"procedural": "kiwi", "resolution": 16}, "mask": {"reach_outer": 1e-9})"),
+          "mask/reach_outer");
   // A surface in metres, strokes in millimetres that miss it.
   write_tri_mesh(program.folder / "ball.obj", testing::sphere_surface(2, 0.02));
   refused(with(with(solid, "STROKE", "8"), "EXEMPLAR", R"({"procedural": "kiwi", "resolution": 16})"),
@@ -204,6 +214,34 @@ TEST_F(BadInput, Models) {
   expect_refused({"render", "ball.pith", "-o", "out.png", "--scene", "scene.json"}, "scene.json: /environment/file");
 }
 
+TEST_F(BadInput, AFullDiskLeavesNoFile) {
+  write_ball("ball.obj");
+  write_recipe("ball.obj");
+  ASSERT_EQ(program.run({"make", "r.json", "-o", "ball.pith"}).code, 0);
+  program.most_file_bytes = 2000;
+  for (const char* out : {"out.pith", "out2.pith"})
+    expect_refused({"cut", "ball.pith", "--plane", "1,0,0,0", "-o", out}, "raise the limit on file sizes");
+  for (const char* out : {"out.vdb", "out.ply", "out.glb", "out.vtu"})
+    expect_refused({"export", "ball.pith", "-o", out}, "raise the limit on file sizes");
+  for (const char* out : {"out.png", "out.jpg", "out.exr"})
+    expect_refused({"render", "ball.pith", "--size", "96x96", "--spp", "1", "-o", out},
+                   "raise the limit on file sizes");
+}
+
+TEST_F(BadInput, AFileNameThatIsNoTextMakesAModel) {
+  write_ball("ball.obj");
+  write_recipe("ball.obj");
+  std::filesystem::rename(program.folder / "r.json", program.folder / "b\xff\x01.json");
+  const Outcome made = program.run({"make", "b\xff\x01.json", "-o", "out.pith"});
+  EXPECT_EQ(made.code, 0) << made.complaint;
+  EXPECT_NE(program.run({"info", "out.pith"}).output.find("b__"), std::string::npos);
+}
+
+TEST_F(BadInput, APictureBeyondAllMemoryIsRefusedAtOnce) {
+  if (double(::sysconf(_SC_PHYS_PAGES)) * double(::sysconf(_SC_PAGESIZE)) > 250e9) GTEST_SKIP() << "it would fit";
+  expect_refused({"render", "gone.pith", "-o", "out.png", "--size", "32768x32768"}, "million pixels or fewer");
+}
+
 TEST_F(BadInput, WrongUsageIsTwo) {
   for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
            {},
@@ -221,6 +259,15 @@ TEST_F(BadInput, WrongUsageIsTwo) {
            {"cut", "a.pith", "--plane", "1,0,0,1", "--keep", "up", "-o", "b.pith"},
            {"cut", "a.pith", "--plane", "1,0,0,nan", "-o", "b.pith"},
            {"cut", "a.pith", "--plane", "1,0,0,1", "--keep", "left", "--spread", "3", "-o", "b.pith"},
+           {"cut", "a.pith", "--plane", "1,0,0,1", "--spread", "nan", "-o", "b.pith"},
+           {"cut", "a.pith", "--plane", "1,0,0,1", "-o", ""},
+           {"make", "a.json", "-o", "b.pith", "--cache-gigabytes", "nan"},
+           {"make", "a.json", "-o", "b.pith", "--cache", ""},
+           {"make", "a.json", "-o", "b.pith", "--seed", "-1"},
+           {"sample", "a.pith", "p.npy", "-o", "b.npy", "--footprint", "nan"},
+           {"export", "a.pith", "-o", "b.ply", "--max-edge", "nan"},
+           {"render", "a.pith", "-o", "b.png", "--exposure", "inf"},
+           {"render", "a.pith", "-o", "b.png", "--time", "nan"},
            {"render", "a.pith", "-o", "b.png", "--size", "10"},
            {"render", "a.pith", "-o", "b.png", "--spp", "0"}}) {
     const Outcome outcome = program.run(command);

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <string>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <vector>
@@ -37,6 +38,10 @@ public:
     if (!::freopen((folder / ".output").c_str(), "w", stdout) ||
         !::freopen((folder / ".complaint").c_str(), "w", stderr))
       ::_exit(99);
+    if (most_file_bytes > 0) {
+      const rlimit limit{most_file_bytes, most_file_bytes};
+      ::setrlimit(RLIMIT_FSIZE, &limit);
+    }
     std::vector<std::string> command{PITH_BINARY_DIR "/pith"};
     command.insert(command.end(), arguments.begin(), arguments.end());
     std::vector<char*> pointers;
@@ -67,6 +72,8 @@ public:
   }
 
   ScratchFolder folder;
+  rlim_t most_file_bytes =
+      0; ///< how large files may grow that the program writes: a stand-in for a full disk; 0: any
 };
 
 } // namespace pith::testing
