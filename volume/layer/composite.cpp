@@ -48,7 +48,9 @@ LayerReader::LayerReader(const Layer& l, bool mips) : layer(&l), components(l.ex
   const std::size_t row = l.width + 1, corners = l.domain == Domain::solid ? 4 : 3;
   record_size = row * corners;
   record.resize(l.lookup.size() * record_size + 4); // rows are read four numbers at a time
+  patch_of.resize(l.lookup.size());
   parallel_for(l.lookup.size(), 4096, [&](std::size_t i) {
+    patch_of[i] = l.lookup[i].patch;
     for (std::size_t k = 0; k < corners; ++k)
       std::copy_n(l.corner.data() + l.lookup[i].corner[k] * row, row, record.data() + i * record_size + k * row);
   });
@@ -185,7 +187,7 @@ LayerValue composite_over(const LayerReader& reader, std::span<const Lookup> loo
       Candidate& c = candidate[count];
       c.lookup = &lookups[next - 1];
       c.sight = weight_at<Width>(reader, *c.lookup, point.barycentric);
-      c.patch = &reader.patch[c.lookup->patch];
+      c.patch = &reader.patch[reader.patch_of[c.lookup - reader.layer->lookup.data()]];
       if (!(c.sight.alpha > 0)) continue;
       if (c.patch->mask) {
         if (!c.patch->mask->reaches(c.sight.w)) continue;

@@ -17,7 +17,7 @@ std::array<Vec3d, 4> barycentric_gradients(const TetMesh& mesh, TetId tet);
 
 /// A layer with what is needed to read it fast: grids for every mip level, decoding tables, and the corner rows of
 /// every look-up side by side (with 3 coordinates in a tet one line of the cache instead of four). Refers to the
-/// layer. Memory: 64 bytes per look-up and the coarser levels.
+/// layer. Memory: 68 bytes per look-up, and per texel 2.3 for each component.
 struct LayerReader {
   explicit LayerReader(const Layer& layer, bool mips);
 
@@ -35,8 +35,9 @@ struct LayerReader {
   std::vector<Source> source; ///< per exemplar
   std::vector<MaskGrid> mask;
   std::vector<PatchReader> patch;
-  std::size_t record_size = 0; ///< (width + 1) · corners
-  LargeArray<float> record;    ///< per look-up, its corner rows
+  std::size_t record_size = 0;        ///< (width + 1) · corners
+  LargeArray<float> record;           ///< per look-up, its corner rows
+  LargeArray<std::uint32_t> patch_of; ///< per look-up
   int components = 0;
   int height_component = -1; ///< of the first height channel
   bool has_directions = false;

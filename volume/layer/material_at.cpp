@@ -50,10 +50,11 @@ void prefetch_begin(const Root::Tables::LayerEntry& entry, std::uint32_t simplex
   __builtin_prefetch(entry.begin() + simplex);
 }
 void prefetch_row(const LayerReader& reader, std::span<const Lookup> row) {
-  for (std::size_t i = row.size(); i > 0 && i + 3 > row.size(); --i) {
-    __builtin_prefetch(&row[i - 1]);
-    __builtin_prefetch(reader.record.data() + (&row[i - 1] - reader.layer->lookup.data()) * reader.record_size);
-  }
+  if (row.empty()) return;
+  const std::size_t last = &row.back() - reader.layer->lookup.data();
+  __builtin_prefetch(reader.patch_of.data() + last);
+  for (std::size_t i = 0; i < std::min<std::size_t>(2, row.size()); ++i)
+    __builtin_prefetch(reader.record.data() + (last - i) * reader.record_size);
 }
 
 Material& with_unit_directions(const Root::Tables& tables, Material& material) {

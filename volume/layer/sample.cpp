@@ -11,7 +11,6 @@ TexelGrid texel_grid(const Exemplar& exemplar, std::span<const std::uint8_t> tex
   TexelGrid grid;
   grid.axes = exemplar.axes;
   grid.components = exemplar.component_count();
-  grid.blocks = (grid.components + 3) / 4;
   std::vector<std::array<std::uint16_t, 256>> fine(grid.components);
   for (int c = 0; c < grid.components; ++c) {
     const auto [least, largest] = std::minmax_element(decode[c].begin(), decode[c].end());
@@ -22,12 +21,12 @@ TexelGrid texel_grid(const Exemplar& exemplar, std::span<const std::uint8_t> tex
       fine[c][byte] =
           range > 0 ? static_cast<std::uint16_t>(std::lrint((decode[c][byte] - *least) / range * 65535.0)) : 0;
   }
-  grid.texel.resize(exemplar.texel_count() * grid.blocks);
+  grid.texel.resize(exemplar.texel_count() * grid.components + 3);
   parallel_for(exemplar.texel_count(), 1 << 16, [&](std::size_t i) {
     for (int c = 0; c < grid.components; ++c)
-      grid.texel[i * grid.blocks + c / 4].value[c % 4] = fine[c][texels[i * grid.components + c]];
+      grid.texel[i * grid.components + c] = fine[c][texels[i * grid.components + c]];
   });
-  std::uint32_t stride = grid.blocks;
+  std::uint32_t stride = grid.components;
   for (int axis = 0; axis < 4; ++axis) {
     const int n = exemplar.size[axis];
     const bool repeats = exemplar.wrap[axis] == Wrap::repeat;

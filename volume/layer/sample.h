@@ -8,27 +8,21 @@
 
 namespace pith {
 
-/// Four components of one texel, decoded: 0 stands for the least value that a component has, 65535 for its largest.
-/// That is 256 times finer than a byte, and interpolates as it is.
-struct FineTexel {
-  using Four = std::uint16_t __attribute__((vector_size(8)));
-  Four value;
-};
-
-/// One resolution of an exemplar's texels (or of its Gaussian twin), decoded and laid out for reading: `blocks`
-/// texels of four components each side by side. One lane per axis.
+/// One resolution of an exemplar's texels (or of its Gaussian twin), decoded and laid out for reading: components
+/// side by side, 0 for the least value that a component has, 65535 for its largest. That is 256 times finer than a
+/// byte, and interpolates as it is. One lane per axis.
 struct TexelGrid {
   int axes = 3;
   int components = 3;
-  int blocks = 1;                       ///< (components + 3) / 4
   Lanes texels{};                       ///< along each axis
-  IntLanes stride{};                    ///< FineTexels from one texel to the next along each axis
+  IntLanes stride{};                    ///< numbers from one texel to the next along each axis
   IntLanes repeats{}, mirrors{};        ///< −1 where the axis wraps so
   IntLanes count{}, before{}, behind{}; ///< texels, and which of them lie beyond the ends
   bool any_mirror = false;
-  std::array<Lanes, max_components / 4> low{}, step{}; ///< per block: value = low + step · number
-  LargeArray<FineTexel> texel;
+  std::array<Lanes, max_components / 4> low{}, step{}; ///< per four components: value = low + step · number
+  LargeArray<std::uint16_t> texel;                     ///< and three more numbers: read four at a time
 };
+
 /// For each component the 256 decoded values of a byte.
 using DecodeTable = std::vector<std::array<float, 256>>;
 DecodeTable decode_table(const Exemplar& exemplar);
@@ -62,7 +56,7 @@ inline TexelCell cell_at(const TexelGrid& grid, Lanes position) {
 
 /// Asks the memory for the texels of a cell, so that they are there when sample() comes.
 inline void prefetch(const TexelGrid& grid, const TexelCell& cell) {
-  const FineTexel* row = grid.texel.data() + std::uint32_t(cell.low[0]);
+  const std::uint16_t* row = grid.texel.data() + std::uint32_t(cell.low[0]);
   for (const std::uint32_t z : {std::uint32_t(cell.low[2]), std::uint32_t(cell.high[2])})
     for (const std::uint32_t y : {std::uint32_t(cell.low[1]), std::uint32_t(cell.high[1])})
       __builtin_prefetch(row + y + z);
@@ -70,8 +64,11 @@ inline void prefetch(const TexelGrid& grid, const TexelCell& cell) {
 
 /// The decoded, interpolated values of components 4 · block … 4 · block + 3.
 inline Lanes sample(const TexelGrid& grid, const TexelCell& cell, int block) {
-  const auto at = [&](std::uint32_t offset) {
-    return __builtin_convertvector(grid.texel[offset + block].value, Lanes);
+  using Four = std::uint16_t __attribute__((vector_size(8)));
+  const auto at = [texel = grid.texel.data() + 4 * block](std::uint32_t offset) {
+    Four number;
+    std::memcpy(&number, texel + offset, sizeof number);
+    return __builtin_convertvector(number, Lanes);
   };
   const std::uint32_t x0 = cell.low[0], x1 = cell.high[0], y0 = cell.low[1], y1 = cell.high[1];
   const float fx = cell.fraction[0], fy = cell.fraction[1];
@@ -98,7 +95,7 @@ inline Lanes sample(const TexelGrid& grid, const TexelCell& cell, int block) {
 
 /// result[0 … components − 1] = all values.
 inline void sample(const TexelGrid& grid, const TexelCell& cell, float* result) {
-  for (int block = 0; block < grid.blocks; ++block) {
+  for (int block = 0; 4 * block < grid.components; ++block) {
     const Lanes values = sample(grid, cell, block);
     for (int c = 0; c < std::min(4, grid.components - 4 * block); ++c) result[4 * block + c] = values[c];
   }
