@@ -41,6 +41,10 @@ ProgressLine::Kind progress_kind(const Session& session) {
 
 constexpr const char* no_threads = "the system gives no more threads; free memory, or use fewer (--threads)";
 
+bool is_about_threads(const std::system_error& error) {
+  return error.code() == std::errc::resource_unavailable_try_again;
+}
+
 /// The last resort: a library that could not start its threads ends the program this way.
 [[noreturn]] void end_in_one_line() {
   std::string message = no_threads;
@@ -49,7 +53,8 @@ constexpr const char* no_threads = "the system gives no more threads; free memor
       std::rethrow_exception(error);
     } catch (const std::bad_alloc&) {
       message = "out of memory; use a coarser mesh or a smaller exemplar, or free memory";
-    } catch (const std::system_error&) {
+    } catch (const std::system_error& other) {
+      if (!is_about_threads(other)) message = std::string("failed: ") + other.what();
     } catch (const std::exception& other) {
       message = std::string("failed: ") + other.what();
     } catch (...) {
@@ -89,8 +94,9 @@ int run(const Verb& verb, Session& session) {
     return end("file", error.what(), failed);
   } catch (const SolverFailure& error) {
     return end("solver", error.what(), failed);
-  } catch (const std::system_error&) {
-    return end("memory", no_threads, failed);
+  } catch (const std::system_error& error) {
+    if (is_about_threads(error)) return end("memory", no_threads, failed);
+    return end("other", error.what(), failed);
   } catch (const std::exception& error) {
     return end("other", error.what(), failed);
   }
