@@ -168,7 +168,6 @@ gallery_models=(
   "brick       0,0,1,10    1,0,0,15"
   "orange      0,0,1,0     0,1,0,0"
   "banana      1,0,0,30    0,0,1,15.2"
-  "bell_pepper 0,1,0,42    0,0,1,0"
 )
 
 gallery() {
