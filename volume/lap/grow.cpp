@@ -53,6 +53,7 @@ public:
         break;
       }
     }
+    if (!rule_.mirrored) give_back_mirrored();
     set_weights();
     return std::move(growth_);
   }
@@ -82,7 +83,7 @@ private:
     Clump& clump = growth_.clump;
     workspace_.set_simplex(s, static_cast<std::uint32_t>(clump.simplex.size()));
     clump.simplex.push_back(s);
-    const bool follows = follows_seed(s);
+    const bool follows = follows_seed(s) && !singular(s);
     clump.confidence.push_back(follows ? 1.0f : little_confidence);
     target_.push_back(target(s, follows));
     for (int i = 0; i < mesh_.corners; ++i) {
@@ -97,6 +98,8 @@ private:
       clump.corner.push_back(local);
     }
   }
+
+  bool singular(std::uint32_t s) const { return !field_.singular.empty() && field_.singular[s]; }
 
   bool follows_seed(std::uint32_t s) const {
     const double ratio = field_.scale[s] / seed_scale_;
@@ -152,7 +155,7 @@ private:
       for (int k = 0; k < mesh_.corners; ++k) {
         const std::uint32_t next = mesh_.neighbor[std::size_t(clump.simplex[at]) * mesh_.corners + k];
         if (next == Simplices::none || workspace_.local_simplex(next) != Simplices::none) continue;
-        if (!rule_.through && !follows_seed(next)) continue;
+        if (!rule_.through && !follows_seed(next) && !singular(next)) continue;
         predict(next, w);
         if (!under_mask(w, mesh_.corners)) continue;
         add_simplex(next);
@@ -176,7 +179,30 @@ private:
     growth_.warp_iterations += warp(mesh_, clump, targets, weight, solve, pin_, pin_at_);
   }
 
-  /// A vertex on a side behind which growth stopped although the mask is not 0 there fades to 0.
+  /// Takes tets in mirror image out of the clump: beyond the axis coordinates that are imposed fall again.
+  void give_back_mirrored() {
+    Clump& clump = growth_.clump;
+    if (mesh_.corners != 4 || clump.axes != 3) return;
+    std::uint32_t kept = 0;
+    for (std::uint32_t s = 0; s < clump.simplex.size(); ++s) {
+      const auto at = [&](int i) { return Vec3d::Map(&clump.coordinate[std::size_t(clump.corner[4 * s + i]) * 3]); };
+      const Vec3d origin = at(0);
+      if ((at(1) - origin).cross(at(2) - origin).dot(at(3) - origin) < 0) {
+        workspace_.set_simplex(clump.simplex[s], Simplices::none);
+        continue;
+      }
+      clump.simplex[kept] = clump.simplex[s];
+      clump.confidence[kept] = clump.confidence[s];
+      for (int i = 0; i < 4; ++i) clump.corner[4 * kept + i] = clump.corner[4 * s + i];
+      ++kept;
+    }
+    clump.simplex.resize(kept);
+    clump.confidence.resize(kept);
+    clump.corner.resize(4 * std::size_t(kept));
+  }
+
+  /// A vertex on a side behind which growth stopped although the mask is not 0 there fades to 0. A pivot does not:
+  /// all pieces around it end there, and it would be left bare.
   void set_weights() {
     const Clump& clump = growth_.clump;
     growth_.weight.assign(clump.vertex.size(), 1.0f);
@@ -195,7 +221,8 @@ private:
           ++count;
         }
         if (under_mask(side, count))
-          for (int i = 0; i < count; ++i) growth_.weight[local[i]] = 0;
+          for (int i = 0; i < count; ++i)
+            if (field_.pivot.empty() || !field_.pivot[clump.vertex[local[i]]]) growth_.weight[local[i]] = 0;
       }
   }
 

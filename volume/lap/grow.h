@@ -16,13 +16,16 @@ struct GrowField {
   std::array<double, 3> extent{1, 1, 1}; ///< texture widths that the mask's unit cube spans along each axis
   /// Per vertex: becomes that coordinate as it is (extent 1); empty: the coordinate is solved for.
   std::array<std::span<const float>, 3> coordinate{};
+  std::span<const std::uint8_t> singular{}; ///< per simplex: its frame means nothing; may be empty
+  std::span<const std::uint8_t> pivot{};    ///< per vertex: frames turn around it (pivots.h); may be empty
 };
 
 struct GrowRule {
   Mat3d seed_frame = Mat3d::Identity(); ///< the seed's, of seed_frame()
   double frame_tolerance = 1.1;         ///< radians; simplices that turn further from the seed's frame are left out
   double scale_tolerance = std::numeric_limits<double>::infinity(); ///< and those whose scale differs by this factor
-  bool through = false; ///< take them all the same, with little confidence (singular places)
+  bool through = false;  ///< take them all the same, with little confidence
+  bool mirrored = false; ///< keep simplices that end up in mirror image
 };
 
 /// Memory that is used again from paste to paste: which simplices and vertices are in the clump.
@@ -46,12 +49,15 @@ private:
 /// A grown and warped clump.
 struct Growth {
   Clump clump;
-  std::vector<float> weight; ///< per clump vertex: 0 where growth stopped under the mask, else 1
+  std::vector<float> weight; ///< per clump vertex: 0 where growth stopped under the mask (but at pivots), else 1
   int warp_iterations = 0;
 };
 
 /// Grows from `seed`, whose point `pin_barycentric` goes to `pin` (in the mask's unit cube), warps, and grows again
-/// while the warped mask reaches past the clump (§5.2.5, last paragraph).
+/// while the warped mask reaches past the clump (§5.2.5, last paragraph). Singular simplices join every clump that
+/// reaches them, with little confidence, but none grows through them to frames that turn from the seed's: a piece
+/// ends at a singular axis, and simplices that the warp leaves in mirror image are given back. Beyond the paper,
+/// whose pieces lie across the axis and are folded there.
 Growth grow(const Simplices& mesh, const GrowField& field, const Mask& mask, std::uint32_t seed,
             const std::array<double, 3>& pin, const std::array<float, 4>& pin_barycentric, const GrowRule& rule,
             GrowWorkspace& workspace);

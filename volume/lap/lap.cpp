@@ -12,6 +12,7 @@
 #include "volume/lap/affine_layer.h"
 #include "volume/lap/align.h"
 #include "volume/lap/pastes.h"
+#include "volume/lap/pivots.h"
 
 #include <algorithm>
 #include <bit>
@@ -104,7 +105,7 @@ public:
   Filler(const LapInput& input, const Exemplar& exemplar, const LapOptions& options)
       : input_(input), options_(options), traits_(traits_of(options.type)),
         mesh_(simplices_of(input.mesh, input.region)), pastes_(mesh_, coverage(), masks_of(options)),
-        aligner_(exemplar), attempts_(mesh_.count, 0), workspace_(most_seeds) {
+        aligner_(exemplar), attempts_(mesh_.count, 0), failures_(mesh_.count, 0), workspace_(most_seeds) {
     field_.frames = {.axes = input.axes,
                      .fixed_axes = traits_.fixed_axes,
                      .fixed_axis = traits_.fixed_axis,
@@ -112,6 +113,9 @@ public:
     field_.scale = input.scale;
     for (int a = 0; a < 3; ++a)
       if (traits_.imposed[a]) field_.coordinate[a] = input.coordinate[a];
+    field_.singular = input.singular;
+    pivot_ = pivots_of(mesh_, field_.frames, input.singular);
+    field_.pivot = pivot_;
     for (std::uint32_t s = 0; s < mesh_.count; ++s)
       if (pastes_.coverage().open(s)) queue_.push_back(s);
     std::vector<std::uint64_t> priority(mesh_.count);
@@ -176,10 +180,19 @@ private:
 
   void paste(const std::vector<std::uint32_t>& seeds) {
     std::vector<Paste> pastes(seeds.size());
-    parallel_for(seeds.size(), 1, [&](std::size_t i) { pastes[i] = grown(seeds[i], workspace_[i]); });
+    std::vector<std::size_t> pin(seeds.size());
+    std::vector<float> shone(seeds.size());
+    for (std::size_t i = 0; i < seeds.size(); ++i) {
+      pin[i] = open_sample(seeds[i]);
+      shone[i] = pastes_.coverage().shining(seeds[i])[pin[i]];
+    }
+    parallel_for(seeds.size(), 1, [&](std::size_t i) {
+      pastes[i] = grown(seeds[i], pastes_.coverage().samples(seeds[i])[pin[i]], workspace_[i]);
+    });
     for (std::size_t i = 0; i < seeds.size(); ++i) {
       const std::size_t before = pastes_.count();
       pastes_.commit(pastes[i]);
+      failures_[seeds[i]] += pastes_.coverage().shining(seeds[i])[pin[i]] > 0.5f * shone[i];
       statistics_.inverted += pastes[i].inverted;
       statistics_.warp_iterations += pastes[i].growth.warp_iterations;
       if (pastes_.count() > before) shares_.push_back(pastes[i].share_used);
@@ -218,10 +231,10 @@ private:
            (traits_.uses_scale ? ", or the texture larger (scale)" : "");
   }
 
-  Paste grown(std::uint32_t seed, GrowWorkspace& workspace) const {
+  /// `at`: barycentrics of the seed's point, of an open sample.
+  Paste grown(std::uint32_t seed, const std::array<float, 4>& at, GrowWorkspace& workspace) const {
     Paste paste;
     paste.patch.key = hash_of(priority_of(mesh_.center[seed], options_.seed), attempts_[seed]);
-    const std::array<float, 4> at = open_point(seed);
     std::array<double, 3> pin{0.5, 0.5, 0.5}; // (½, d_seed, ½) where depth is a coordinate, §5.2.7
     for (int a = 0; a < 3; ++a) {
       if (!traits_.imposed[a]) continue;
@@ -238,13 +251,15 @@ private:
     Random random(paste.patch.key);
     paste.patch.mask = part * options_.mask_variants + random.below(options_.mask_variants);
 
-    // A seed that its paste failed to cover is tried again with more freedom: first a wider tolerance, then none.
+    // A seed whose point its paste failed to cover is tried again with more freedom: a wider tolerance, then none, at
+    // last in mirror image. (That pastes leave some of a large tet open is no failure.)
+    const int failures = failures_[seed];
     GrowRule rule;
     rule.seed_frame = seed_frame(field.frames, seed, random);
-    rule.frame_tolerance = options_.frame_tolerance * (attempts_[seed] > 0 ? 1.5 : 1);
-    if (traits_.uses_scale) rule.scale_tolerance = options_.scale_tolerance * (attempts_[seed] > 0 ? 1.5 : 1);
-    // The innermost holds the axis, where frames turn all around.
-    rule.through = attempts_[seed] > 1 || (traits_.imposed[1] && part == 2);
+    rule.frame_tolerance = options_.frame_tolerance * (failures > 0 ? 1.5 : 1);
+    if (traits_.uses_scale) rule.scale_tolerance = options_.scale_tolerance * (failures > 0 ? 1.5 : 1);
+    rule.through = failures > 1 || 3 * attempts_[seed] > options_.max_attempts;
+    rule.mirrored = failures > 2 || 3 * attempts_[seed] > 2 * options_.max_attempts;
     paste.growth = grow(mesh_, field, pastes_.masks()[paste.patch.mask], seed, pin, at, rule, workspace);
     pastes_.look(paste);
     std::array<bool, 3> free{};
@@ -257,8 +272,8 @@ private:
     return paste;
   }
 
-  /// Barycentrics of an open sample near the middle of what is open of a simplex.
-  std::array<float, 4> open_point(std::uint32_t s) const {
+  /// The open sample nearest to the middle of what is open of a simplex.
+  std::size_t open_sample(std::uint32_t s) const {
     const auto samples = pastes_.coverage().samples(s);
     const auto shining = pastes_.coverage().shining(s);
     std::array<float, 4> mean{};
@@ -270,14 +285,14 @@ private:
     }
     for (float& m : mean) m /= sum;
     float nearest = std::numeric_limits<float>::infinity();
-    std::array<float, 4> point = mean;
+    std::size_t sample = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (shining[i] <= 1 / 255.0f) continue;
       float squared = 0;
       for (int k = 0; k < 4; ++k) squared += (samples[i][k] - mean[k]) * (samples[i][k] - mean[k]);
-      if (squared < nearest) nearest = squared, point = samples[i];
+      if (squared < nearest) nearest = squared, sample = i;
     }
-    return point;
+    return sample;
   }
 
   const LapInput& input_;
@@ -287,8 +302,10 @@ private:
   Pastes pastes_;
   Aligner aligner_;
   GrowField field_;
+  std::vector<std::uint8_t> pivot_;
   std::vector<std::uint32_t> queue_;
-  std::vector<int> attempts_;
+  std::vector<int> attempts_; ///< pastes at each seed
+  std::vector<int> failures_; ///< of them, those that left its point open
   std::vector<GrowWorkspace> workspace_;
   std::vector<float> shares_;
   LapStatistics statistics_;

@@ -38,14 +38,14 @@ struct LapOptions {
   double sample_spacing = 0.03; ///< of the coverage test, in texture widths
   int coverage_order = 8;       ///< most samples per tet edge in that test: order 8 gives the paper's 165 points
   bool align = true;     ///< choose each paste's phase so that it continues what is already there; false: at random
-  int max_attempts = 12; ///< pastes on one tet before the fill is given up
+  int max_attempts = 24; ///< pastes on one tet before the fill is given up; a third of them keep to all rules
 };
 
 struct LapStatistics {
   std::size_t pastes = 0, rounds = 0;
   std::size_t lookups = 0; ///< only those that can be seen are kept
-  /// Of them, those that show the exemplar in mirror image: where a piece reaches across a singular axis, beyond
-  /// which depth falls again.
+  /// Of them, those that show the exemplar in mirror image: where nothing else covered a tet, at last a piece that
+  /// reaches across a singular axis, beyond which depth falls again.
   std::size_t inverted = 0;
   std::size_t warp_iterations = 0;
   double median_share_used = 0; ///< of a mask's alpha, the part that lies on tets of its clump: median over pastes
@@ -60,7 +60,7 @@ struct LapResult {
 /// fit the type (it must repeat along the axes that are not imposed) or spans have the wrong length; SolverFailure
 /// when some tet cannot be covered; Cancelled. Departures from the paper: new pastes go beneath the older ones, so
 /// that a look-up that nothing can see is never made (the picture is as the paper's with the order reversed); the
-/// fill runs in parallel rounds. Type 2-c pastes sheets that do not end along T; type 2-d, where nothing repeats, is
+/// fill runs in parallel rounds. Pieces end at singular axes instead of folding over them (grow.h). Type 2-c pastes sheets that do not end along T; type 2-d, where nothing repeats, is
 /// a single paste that is exact on every tet.
 LapResult lap(const LapInput& input, const Exemplar& exemplar, const LapOptions& options = {},
               const Progress& progress = {});
