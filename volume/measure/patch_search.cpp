@@ -83,10 +83,10 @@ std::vector<float> turned(const PatchTable& table, const Eigen::MatrixXf& rotati
   return result;
 }
 
-/// Rows: the principal components of (at most 8192 evenly chosen) rows, largest first.
+/// Rows: the principal components of (at most 2048 evenly chosen) rows, largest first.
 Eigen::MatrixXf principal_components(const PatchTable& table) {
   const int n = table.dimension;
-  const std::size_t used = std::min<std::size_t>(table.count(), 8192);
+  const std::size_t used = std::min<std::size_t>(table.count(), 2048);
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(n);
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
   for (std::size_t i = 0; i < used; ++i) {

@@ -4,6 +4,7 @@
 #include "volume/base/random.h"
 #include "volume/measure/patch_search.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -27,41 +28,56 @@ int band_count(const PatchTable& a, const PatchTable& b) {
   return last + 1;
 }
 
+using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Columns: random directions of unit length.
+Eigen::MatrixXf directions_of(int dimension, int directions, std::uint64_t seed) {
+  Eigen::MatrixXf direction(dimension, directions);
+  for (int d = 0; d < directions; ++d) {
+    Random random(seed, stage, static_cast<std::uint64_t>(d));
+    for (int k = 0; k < dimension; ++k) direction(k, d) = static_cast<float>(random.normal());
+    direction.col(d).normalize();
+  }
+  return direction;
+}
+
+/// Rows: a patch on each of the directions. All directions at once, for they are what adds up in lanes.
+RowMajor projected(const PatchTable& table, const Eigen::MatrixXf& direction) {
+  const RowMajor by_number = direction;
+  RowMajor result(static_cast<Eigen::Index>(table.count()), direction.cols());
+  parallel_for(table.count(), 128, [&](std::size_t i) {
+    const auto row = table.row(i);
+    Eigen::RowVectorXf sum = Eigen::RowVectorXf::Zero(direction.cols());
+    for (int k = 0; k < table.dimension; ++k) sum += row[k] * by_number.row(k);
+    result.row(static_cast<Eigen::Index>(i)) = sum;
+  });
+  return result;
+}
+
 /// Mean over directions and bands, bands weighted by the first set's patches.
 double sliced_wasserstein(const PatchTable& a, const PatchTable& b, int directions, std::uint64_t seed) {
   const int n = a.dimension, bands = band_count(a, b);
   std::vector<std::vector<std::uint32_t>> rows_a(bands), rows_b(bands);
   for (std::uint32_t i = 0; i < a.count(); ++i) rows_a[a.band[i]].push_back(i);
   for (std::uint32_t i = 0; i < b.count(); ++i) rows_b[b.band[i]].push_back(i);
-  std::vector<double> sum(directions);
+  const Eigen::MatrixXf direction = directions_of(n, directions, seed);
+  const RowMajor of_a = projected(a, direction), of_b = projected(b, direction);
+  const auto column = [](const RowMajor& table, const std::vector<std::uint32_t>& rows, std::size_t d) {
+    std::vector<float> result;
+    result.reserve(rows.size());
+    for (const std::uint32_t r : rows) result.push_back(table(r, static_cast<Eigen::Index>(d)));
+    return result;
+  };
   double weight = 0;
   for (int k = 0; k < bands; ++k)
     if (!rows_a[k].empty() && !rows_b[k].empty()) weight += static_cast<double>(rows_a[k].size());
   if (!(weight > 0)) return 0;
+  std::vector<double> sum(directions);
   parallel_for(directions, 1, [&](std::size_t d) {
-    Random random(seed, stage, d);
-    std::vector<float> direction(n);
-    double squared = 0;
-    for (float& x : direction) {
-      x = static_cast<float>(random.normal());
-      squared += x * x;
-    }
-    for (float& x : direction) x = static_cast<float>(x / std::sqrt(squared));
-    const auto projected = [&](const PatchTable& table, const std::vector<std::uint32_t>& rows) {
-      std::vector<float> result;
-      result.reserve(rows.size());
-      for (const std::uint32_t r : rows) {
-        const auto row = table.row(r);
-        float dot = 0;
-        for (int k = 0; k < n; ++k) dot += row[k] * direction[k];
-        result.push_back(dot);
-      }
-      return result;
-    };
     for (int k = 0; k < bands; ++k) {
       if (rows_a[k].empty() || rows_b[k].empty()) continue;
       sum[d] += static_cast<double>(rows_a[k].size()) *
-                wasserstein_distance(projected(a, rows_a[k]), projected(b, rows_b[k]));
+                wasserstein_distance(column(of_a, rows_a[k], d), column(of_b, rows_b[k], d));
     }
   });
   double total = 0;
@@ -123,20 +139,23 @@ std::vector<double> autocorrelation(std::span<const Slice> slices, int lag, int 
   std::vector<Sums> part(slices.size());
   parallel_for(slices.size(), 1, [&](std::size_t n) {
     const Slice& s = slices[n];
-    std::vector<Vec3d> v(s.inside.size(), Vec3d::Zero());
-    for (std::size_t i = 0; i < v.size(); ++i)
-      if (s.inside[i]) v[i] = value(s, i) - mean[band_at(s, i, bands)];
+    // What is not inside is 0 and adds nothing, so that whole rows can be multiplied.
+    Eigen::VectorXd v = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(s.inside.size()));
+    Eigen::VectorXf inside = Eigen::VectorXf::Zero(static_cast<Eigen::Index>(s.inside.size()));
+    for (std::size_t i = 0; i < s.inside.size(); ++i)
+      if (s.inside[i]) {
+        v.segment<3>(3 * static_cast<Eigen::Index>(i)) = value(s, i) - mean[band_at(s, i, bands)];
+        inside[static_cast<Eigen::Index>(i)] = 1;
+      }
     part[n] = {std::vector<double>(shifts), std::vector<double>(shifts)};
     for (int dy = -lag; dy <= lag; ++dy)
-      for (int dx = 0; dx <= lag; ++dx) {
-        const int shift = (dy + lag) * (lag + 1) + dx;
-        for (int y = std::max(0, -dy); y < std::min(s.height(), s.height() - dy); ++y)
-          for (int x = 0; x + dx < s.width(); ++x) {
-            const std::size_t i = s.index(x, y), j = s.index(x + dx, y + dy);
-            if (!s.inside[i] || !s.inside[j]) continue;
-            part[n].product[shift] += v[i].dot(v[j]);
-            part[n].pairs[shift] += 1;
-          }
+      for (int dx = 0; dx <= std::min(lag, s.width() - 1); ++dx) {
+        const int shift = (dy + lag) * (lag + 1) + dx, length = s.width() - dx;
+        for (int y = std::max(0, -dy); y < std::min(s.height(), s.height() - dy); ++y) {
+          const auto i = static_cast<Eigen::Index>(s.index(0, y)), j = static_cast<Eigen::Index>(s.index(dx, y + dy));
+          part[n].product[shift] += v.segment(3 * i, 3 * length).dot(v.segment(3 * j, 3 * length));
+          part[n].pairs[shift] += inside.segment(i, length).dot(inside.segment(j, length));
+        }
       }
   });
   std::vector<double> product(shifts), pairs(shifts);
