@@ -13,6 +13,7 @@ usage: ./do VERB [options]
   demo                           build, then make, cut and render the kiwi; pictures and model land in build/demo
   gallery [NAME...]              build, then make the models of docs/gallery.md (or those named) and their pictures in
                                  docs/gallery: whole, cut across and cut along
+  quality [NAME...]              build, then make the models of docs/quality.md (or those named) and print its table
   test [--oracles] [--slow] [--no-sanitizers]
                                  build and pass the tests, the fast ones under sanitizers too; also those that compare
                                  with other programs, and those that take long
@@ -21,7 +22,7 @@ usage: ./do VERB [options]
                                  write FILE
   format [--check]               clang-format over pith's sources; --check only says what would change
 
-deps runs by itself before build, demo, gallery, test and bench. PITH_SHARED_DATA names a folder of real meshes, images and
+deps runs by itself before build, demo, gallery, quality, test and bench. PITH_SHARED_DATA names a folder of real meshes, images and
 volumes that some tests and benchmarks read; without it they are skipped, saying so.
 END
 }
@@ -189,6 +190,68 @@ gallery() {
   done
 }
 
+# The models whose fills are measured: recipes of data/recipes.
+quality_models=({table1/,}{kiwi,carrot,tree,tube,strata,watermelon,cake})
+
+# What `pith info --quality` says, on standard input, as a row of docs/quality.md. Of several layers the worst counts;
+# bold: the target is not met; –: there is nothing of the kind.
+quality_row() { # NAME
+  awk -v name="$1" '
+    function worst(key, value, least) { # least: a larger value is better
+      if (!(key in figure) || (least ? value < figure[key] : value > figure[key])) figure[key] = value
+    }
+    function told(key, digits, bar, least,    text) {
+      if (!(key in figure)) return "–"
+      text = sprintf("%." digits "f", figure[key])
+      return (least ? figure[key] < bar : figure[key] > bar) ? "**" text "**" : text
+    }
+    function slice(key) { return told(key "coherence", 2, 1.3) " / " told(key "sliced Wasserstein", 2, 1.3) }
+    /^  [^ ]/ { things = /\(layer things / }
+    !/^    / || things { next }
+    {
+      split(substr($0, 5), words, /   +/)
+      measure = words[1]
+      value = substr($0, 5 + length(measure))
+      sub(/^ +/, "", value)
+      sub(/ .*/, "", value)
+      if (value ~ /nan|inf/) next
+      value += 0
+    }
+    measure == "points that more than 2 % shines through" { worst("holes", 1e4 * value) }
+    measure == "points that more than 1/255 shines through" { worst("thin", 1e4 * value) }
+    measure == "masked look-ups per point, 99th percentile" { worst("p99", value) }
+    measure == "used share of a mask (on kept look-ups), median" { worst("used", 100 * value, 1) }
+    measure ~ /^angle of axis .*median/ { worst("median", value) }
+    measure ~ /^angle of axis .*percentile/ { worst("p95", value) }
+    measure ~ /^(across [RST]|oblique|near the core): / { worst(measure, value) }
+    measure == "variance where patches mix ÷ interiors" { worst("variance", value, 1) }
+    measure ~ /^99th percentile of the gradient/ { worst("gradient", value) }
+    END {
+      printf "| %s | %s / %s | %s | %s | %s / %s |", name, told("holes", 0, 0), told("thin", 0, 0), told("p99", 0, 25),
+        told("used", 0, 70, 1), told("median", 1, 3), told("p95", 1, 15)
+      printf " %s | %s | %s | %s |", slice("across R: "), slice("across S: "), slice("across T: "), slice("oblique: ")
+      printf " %s | %s | %s |\n", told("variance", 2, 0.9, 1), told("gradient", 2, 1.1), slice("near the core: ")
+    }'
+}
+
+quality() {
+  deps
+  configured release
+  built release pith
+  local pith=build/release/pith out=build/quality name model
+  mkdir -p "$out"
+  [[ $# -gt 0 ]] || set -- "${quality_models[@]}"
+  for name in "$@"; do
+    model=$out/${name//\//-}
+    step "$name" >&2
+    "$pith" make "data/recipes/$name.json" -o "$model.pith" >&2
+    "$pith" info --quality "$model.pith" >"$model.txt"
+  done
+  echo "| model | holes / thin | layers | used | axes | across R | across S | across T | oblique | variance | gradient | near axis |"
+  echo "|---|---|---|---|---|---|---|---|---|---|---|---|"
+  for name in "$@"; do quality_row "$name" <"$out/${name//\//-}.txt"; done
+}
+
 # The test programs that run under the sanitizers: quick ones over the code that handles memory and files.
 sanitized=(test_base test_field)
 
@@ -243,7 +306,7 @@ format() {
 verb=${1:-help}
 [[ $# -gt 0 ]] && shift
 case $verb in
-deps | build | demo | gallery | bench | format) "$verb" "$@" ;;
+deps | build | demo | gallery | quality | bench | format) "$verb" "$@" ;;
 test) run_tests "$@" ;;
 help | -h | --help) usage ;;
 *)

@@ -11,7 +11,7 @@ namespace pith {
 struct SliceMetricOptions {
   WindowOptions window;
   TextureDistanceOptions distance{.bands = 4,
-                                  .patches = 6144}; ///< bands: 1 is used where the texture does not vary with depth
+                                  .patches = 3072}; ///< bands: 1 is used where the texture does not vary with depth
 };
 
 struct SliceMetric {
