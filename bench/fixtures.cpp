@@ -5,11 +5,13 @@
 
 namespace pith::bench {
 
-BuiltRecipe built_recipe(const Settings& settings, const std::string& name) {
+BuiltRecipe built_recipe(const Settings& settings, const std::string& name,
+                         const std::function<void(Recipe&)>& edit) {
   const std::filesystem::path path = settings.source / "data/recipes" / name;
   if (!std::filesystem::exists(path)) throw Skipped("there is no data/recipes/" + name);
   BuiltRecipe built;
   built.recipe = read_recipe(path);
+  if (edit) edit(built.recipe);
   Recipe uncut = built.recipe;
   uncut.cuts.clear();
   uncut.moves.clear();

@@ -11,7 +11,9 @@ struct BuiltRecipe {
   Recipe recipe;
   BuildResult result;
 };
-BuiltRecipe built_recipe(const Settings& settings, const std::string& name);
+/// `edit` changes the recipe before it is built.
+BuiltRecipe built_recipe(const Settings& settings, const std::string& name,
+                         const std::function<void(Recipe&)>& edit = {});
 
 /// A cube of 6 · cells³ tets with jittered vertices, edges about 1 mm, its corner at the origin. The tets fill it.
 TetMesh jittered_cube(int cells);

@@ -36,9 +36,10 @@ struct LapOptions {
   double frame_tolerance = 0.8; ///< largest angle between a tet's axes and the seed's, radians (§5.2.4)
   double scale_tolerance = 1.5; ///< largest ratio of their scales, where these are given (types 0, 1-a, 2-a)
   double sample_spacing = 0.03; ///< of the coverage test, in texture widths
-  int coverage_order = 8;       ///< most samples per tet edge in that test: order 8 gives the paper's 165 points
-  bool align = true;     ///< choose each paste's phase so that it continues what is already there; false: at random
-  int max_attempts = 24; ///< pastes on one tet before the fill is given up; a third of them keep to all rules
+  int coverage_order = 12; ///< most samples per tet edge in that test; order 8 gives the paper's 165 points, between
+                           ///< which coarse tets keep holes
+  bool align = true;       ///< choose each paste's phase so that it continues what is already there; false: at random
+  int max_attempts = 24;   ///< pastes on one tet before the fill is given up; a third of them keep to all rules
 };
 
 struct LapStatistics {
@@ -60,8 +61,8 @@ struct LapResult {
 /// fit the type (it must repeat along the axes that are not imposed) or spans have the wrong length; SolverFailure
 /// when some tet cannot be covered; Cancelled. Departures from the paper: new pastes go beneath the older ones, so
 /// that a look-up that nothing can see is never made (the picture is as the paper's with the order reversed); the
-/// fill runs in parallel rounds. Pieces end at singular axes instead of folding over them (grow.h). Type 2-c pastes sheets that do not end along T; type 2-d, where nothing repeats, is
-/// a single paste that is exact on every tet.
+/// fill runs in parallel rounds. Pieces end at singular axes instead of folding over them (grow.h). Type 2-c pastes
+/// sheets that do not end along T; type 2-d, where nothing repeats, is a single paste that is exact on every tet.
 LapResult lap(const LapInput& input, const Exemplar& exemplar, const LapOptions& options = {},
               const Progress& progress = {});
 
