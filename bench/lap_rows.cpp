@@ -49,9 +49,10 @@ Measured table1(const Settings& settings, const std::string& name, double paper)
                            described(filling), one, two, one / two, paper)};
 }
 
-/// The most memory that this process has held since the last call with `begin`, GB; 0 where the system does not say.
-double peak_memory(bool begin) {
-  if (begin) std::ofstream("/proc/self/clear_refs") << "5";
+void reset_peak_memory() { std::ofstream("/proc/self/clear_refs") << "5"; }
+
+/// The most memory that this process has held since then, GB; 0 where the system does not say.
+double peak_memory() {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);)
     if (line.starts_with("VmHWM:")) return std::stod(line.substr(6)) * 1e-6;
@@ -60,14 +61,14 @@ double peak_memory(bool begin) {
 
 /// A kiwi, its exemplar of 128³ spanning the depth, in tets of the given edge, without its seeds.
 Measured large(const Settings& settings, double edge) {
-  peak_memory(true);
+  reset_peak_memory();
   const BuiltRecipe built = built_recipe(settings, "kiwi.json", [&](Recipe& recipe) {
     recipe.tetrahedralize.interior_edge = edge;
     for (Solid& solid : recipe.solids) solid.scatter.clear();
   });
   const Filling filling = filling_of(built.result);
   return {filling.seconds,
-          fmt::format("{}; {:.2f} GB at most, tets being made included", described(filling), peak_memory(false))};
+          fmt::format("{}; {:.2f} GB at most, tets being made included", described(filling), peak_memory())};
 }
 
 } // namespace

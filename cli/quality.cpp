@@ -78,9 +78,9 @@ private:
 
 std::string text_of(const Vec3d& v) { return fmt::format("({:.4g}, {:.4g}, {:.4g})", v.x(), v.y(), v.z()); }
 
-/// Small solids pasted each as it is (build_model names them so): they have one frame each, follow no field and do
-/// not tile, so that frames, copies and slices say nothing of them.
-bool holds_things(const Layer& layer) { return layer.name.starts_with("things "); }
+/// Small solids pasted each as it is, which alone make a layer sparse: they have one frame each, follow no field and
+/// do not tile, so that frames, copies and slices say nothing of them.
+bool holds_things(const Layer& layer) { return !layer.simplex.empty(); }
 
 /// What the recipe says of a region's solid that the measures need.
 struct SolidFacts {

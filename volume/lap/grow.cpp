@@ -83,7 +83,7 @@ private:
     Clump& clump = growth_.clump;
     workspace_.set_simplex(s, static_cast<std::uint32_t>(clump.simplex.size()));
     clump.simplex.push_back(s);
-    const bool follows = follows_seed(s) && !singular(s);
+    const bool follows = follows_seed(s);
     clump.confidence.push_back(follows ? 1.0f : little_confidence);
     target_.push_back(target(s, follows));
     for (int i = 0; i < mesh_.corners; ++i) {
@@ -102,6 +102,7 @@ private:
   bool singular(std::uint32_t s) const { return !field_.singular.empty() && field_.singular[s]; }
 
   bool follows_seed(std::uint32_t s) const {
+    if (singular(s)) return false;
     const double ratio = field_.scale[s] / seed_scale_;
     return frames_.cosine(s) >= smallest_cosine_ && ratio <= rule_.scale_tolerance &&
            ratio * rule_.scale_tolerance >= 1;

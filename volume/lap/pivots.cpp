@@ -15,15 +15,8 @@ std::vector<std::uint8_t> pivots_of(const Simplices& mesh, const FrameSource& fr
       const std::uint32_t v = mesh.corner[std::size_t(s) * mesh.corners + i];
       if (first[v] == Simplices::none) first[v] = s;
       if (!singular.empty() && singular[s]) pivot[v] = 1;
-      // Seen from the first, so that an axis without a sign does not cancel.
-      Mat3d frame = frames.axes[s];
-      if (frames.fixed_axes == 3) {
-        frame = PasteFrames(frames, frames.axes[first[v]]).at(s);
-      } else if (frames.unsigned_axis &&
-                 frame.col(frames.fixed_axis).dot(frames.axes[first[v]].col(frames.fixed_axis)) < 0) {
-        frame.col(frames.fixed_axis) *= -1;
-      }
-      sum[v] += frame;
+      // As a paste from the first would see it, so that an axis without a sign does not cancel.
+      sum[v] += PasteFrames(frames, frames.axes[first[v]]).at(s);
       ++count[v];
     }
   }
