@@ -197,6 +197,68 @@ TEST(FiveMethods, HistogramMixingKeepsMeanAndVariance) {
   EXPECT_NEAR(mean[2], mean[0], 0.02);
 }
 
+TEST(FiveMethods, MixingAboutAMeanThatVariesKeepsMeanAndVariance) {
+  // Noise about a mean that rises along y, which both look-ups share; they meet at shares w and 1 − w.
+  Exemplar graded = exemplar_of("graded", 2, {64, 64, 1}, Wrap::repeat, linear_color(),
+                                [random = Random(7)](int, int y, int) mutable {
+                                  const int v = 60 + 2 * y + static_cast<int>(50 * (random.uniform() - 0.5));
+                                  return std::vector<int>{v, v, v};
+                                });
+  graded.wrap[1] = Wrap::clamp;
+  Layer layer;
+  layer.domain = Domain::skin;
+  layer.width = 2;
+  layer.exemplar = {graded};
+  layer.patch = {{0, Patch::no_mask, {}, 0}, {0, Patch::no_mask, {}, 0}};
+  layer.patch[1].frame.offset[0] = 20.5f / 64; // other texels, and between them: a variance of its own
+  struct Row {
+    double offset = 0, squares = 0;
+    void add(double value, int y) {
+      const double away = value - (60 + 2 * y) / 255.0;
+      offset += away / 4096;
+      squares += away * away / 4096;
+    }
+  };
+  const auto measured = [&](Blend blend, float first, float second) {
+    layer.blend = blend;
+    layer.lookup.clear();
+    layer.corner.clear();
+    layer.begin.clear();
+    LayerWriter writer(layer);
+    writer.add(0, {{0, 0, first}, {2, 0, first}, {0, 2, first}});
+    writer.add(1, {{0, 0, second}, {2, 0, second}, {0, 2, second}});
+    writer.end_simplex();
+    const LayerReader reader(layer, false);
+    Row row;
+    for (int j = 0; j < 64; ++j)
+      for (int i = 0; i < 64; ++i) {
+        SimplexPoint point;
+        point.barycentric[1] = (i + 0.5f) / 128;
+        point.barycentric[2] = (j + 0.5f) / 128;
+        point.barycentric[0] = 1 - point.barycentric[1] - point.barycentric[2];
+        const LayerValue at = composite(reader, layer.lookup, point);
+        EXPECT_FLOAT_EQ(at.coverage, 1);
+        row.add(at.value[0], j);
+      }
+    return row;
+  };
+  const Blend plain, preserving{.mean_over = {true, false}};
+  const Row below = measured(plain, 1, 0), above = measured(plain, 1, 1);
+  for (const float share : {0.2f, 0.5f, 0.7f}) {
+    const double w = share, expected = (w * w * above.squares + (1 - w) * (1 - w) * below.squares);
+    const Row mixed = measured(plain, 1, share), kept = measured(preserving, 1, share);
+    EXPECT_NEAR(mixed.squares / expected, 1, 0.1) << "independent";
+    EXPECT_NEAR(kept.squares / (expected / (w * w + (1 - w) * (1 - w))), 1, 0.1);
+    EXPECT_NEAR(kept.offset, 0, 0.01);
+    Blend linear = preserving;
+    linear.mix = Blend::Mix::linear;
+    const Row weighted = measured(linear, 1 - share, share);
+    EXPECT_NEAR(weighted.squares, kept.squares, 1e-6);
+  }
+  const Row alone = measured(preserving, 1, 0);
+  EXPECT_EQ(alone.squares, below.squares) << "nothing is mixed";
+}
+
 TEST(FiveMethods, MoreWeightedLookUpsThanTheLimitDropTheSmallest) {
   Model model = cube_model(1, size);
   Layer layer;

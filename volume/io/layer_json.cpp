@@ -187,7 +187,8 @@ json json_of(const Layer& layer) {
           {"blend",
            {{"select", name_in(select_names, layer.blend.select)},
             {"grace", layer.blend.grace},
-            {"mix", name_in(mix_names, layer.blend.mix)}}},
+            {"mix", name_in(mix_names, layer.blend.mix)},
+            {"mean_over", layer.blend.mean_over}}},
           {"evaluation", json_of(layer.evaluation)},
           {"sparse", !layer.simplex.empty()},
           {"patches", layer.patch.size()},
@@ -205,6 +206,13 @@ Layer layer_of(const json& value, const std::string& where) {
   layer.blend.select = value_in(select_names, member(blend, "select", where), "select", where);
   layer.blend.grace = static_cast<float>(number(blend, "grace", where));
   layer.blend.mix = value_in(mix_names, member(blend, "mix", where), "mix", where);
+  if (blend.contains("mean_over")) { // without: none
+    const json& over = list(blend, "mean_over", 4, where);
+    for (int i = 0; i < 4; ++i) {
+      if (!over[i].is_boolean()) refuse_json(where, "has a mean_over that is not made of true and false");
+      layer.blend.mean_over[i] = over[i].get<bool>();
+    }
+  }
   layer.evaluation = axis_map_of(member(value, "evaluation", where), where);
   return layer;
 }

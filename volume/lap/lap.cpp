@@ -323,6 +323,8 @@ LapResult lap(const LapInput& input, const Exemplar& exemplar, const LapOptions&
     result.statistics.median_share_used = 1;
   } else {
     result = Filler(input, exemplar, options).run(progress);
+    if (options.preserve_variance)
+      for (int a = 0; a < 3; ++a) result.layer.blend.mean_over[a] = !traits_of(options.type).imposed[a];
   }
   result.layer.name = exemplar.name;
   result.layer.exemplar.push_back(exemplar);

@@ -39,6 +39,7 @@ struct LapOptions {
   int coverage_order = 12; ///< most samples per tet edge in that test; order 8 gives the paper's 165 points, between
                            ///< which coarse tets keep holes
   bool align = true;       ///< choose each paste's phase so that it continues what is already there; false: at random
+  bool preserve_variance = true; ///< where pieces mix (Blend::mean_over); false: as the paper, which loses contrast there
   int max_attempts = 24;   ///< pastes on one tet before the fill is given up; a third of them keep to all rules
 };
 

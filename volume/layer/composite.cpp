@@ -28,12 +28,15 @@ LayerReader::LayerReader(const Layer& l, bool mips) : layer(&l), components(l.ex
       level = half_size(*e);
       add(level);
     }
+    if (l.blend.preserves_variance()) s.mean = mean_grid(s.level.front(), l.blend.mean_over);
     source.push_back(std::move(s));
   }
   int component = 0;
   for (const Channel& c : l.exemplar.front().channel) {
     if (c.semantic == Semantic::height && height_component < 0) height_component = component;
-    has_directions |= c.semantic == Semantic::direction || c.semantic == Semantic::normal;
+    const bool directed = c.semantic == Semantic::direction || c.semantic == Semantic::normal;
+    has_directions |= directed;
+    std::fill_n(preserved.begin() + component, c.components, l.blend.preserves_variance() && !directed);
     component += c.components;
   }
   for (const Mask& m : l.mask) mask.emplace_back(m);
@@ -162,6 +165,23 @@ void read_exemplar(const LayerReader& reader, const Lookup& lookup, const Sight&
   if (carry) carry_directions(reader, j, point, value);
 }
 
+/// Blend::mean_over. `result` is a sum of shown values; `squares`: Σ of the squares of their shares; `lookup`: any of
+/// them, since along the axes over which the mean varies all that are seen at a point have the same coordinates.
+void preserve_variance(const LayerReader& reader, const Lookup& lookup, Lanes w, float squares, LayerValue& result) {
+  const LayerReader::PatchReader& patch = reader.patch[lookup.patch];
+  const TexelGrid& grid = patch.source->mean;
+  std::array<float, max_components> mean;
+  sample(grid, cell_at(grid, patch.scale * w + patch.offset), mean.data());
+  const float gain = result.coverage / std::sqrt(squares);
+  for (int c = 0; c < reader.components; ++c) {
+    if (!reader.preserved[c]) continue;
+    const float least = grid.low[c / 4][c % 4], most = least + 65535 * grid.step[c / 4][c % 4];
+    const float middle = result.coverage * mean[c];
+    result.value[c] = std::clamp(middle + gain * (result.value[c] - middle), result.coverage * least,
+                                 result.coverage * most);
+  }
+}
+
 constexpr float opaque = 0.996f; ///< what lies below would change no 8-bit value by more than one step
 
 /// From the newest paste down until nothing shines through. Reading a mask, then an exemplar, then the next mask
@@ -171,7 +191,7 @@ template <int Width, int Components>
 LayerValue composite_over(const LayerReader& reader, std::span<const Lookup> lookups, const SimplexPoint& point) {
   constexpr int ahead = 2;
   const int components = Components ? Components : reader.components;
-  const bool plain = !needs_gradient(reader, point.footprint);
+  const bool plain = !needs_gradient(reader, point.footprint), preserves = reader.layer->blend.preserves_variance();
   struct Candidate {
     Sight sight;
     TexelCell cell;
@@ -180,7 +200,18 @@ LayerValue composite_over(const LayerReader& reader, std::span<const Lookup> loo
   };
   LayerValue result;
   std::array<float, max_components> value;
-  for (std::size_t next = lookups.size(); next > 0;) {
+  float squares = 0;
+  Candidate last;
+  const auto finished = [&]() -> const LayerValue& {
+    if (result.coverage >= opaque) { // nothing shines through: what is seen stands for the whole
+      for (int k = 0; k < components; ++k) result.value[k] /= result.coverage;
+      squares /= result.coverage * result.coverage;
+      result.coverage = 1;
+    }
+    if (preserves && result.lookups_read > 1) preserve_variance(reader, *last.lookup, last.sight.w, squares, result);
+    return result;
+  };
+  for (std::size_t next = lookups.size(); next > 0 && result.coverage < opaque;) {
     std::array<Candidate, ahead> candidate;
     int count = 0;
     for (; next > 0 && count < ahead; --next) {
@@ -211,14 +242,11 @@ LayerValue composite_over(const LayerReader& reader, std::span<const Lookup> loo
       const float shown = (1 - result.coverage) * std::min(c.sight.alpha, 1.0f);
       for (int k = 0; k < components; ++k) result.value[k] += shown * value[k];
       result.coverage += shown;
-      if (result.coverage >= opaque) { // nothing shines through: what is seen stands for the whole
-        for (int k = 0; k < components; ++k) result.value[k] /= result.coverage;
-        result.coverage = 1;
-        return result;
-      }
+      if (preserves) squares += shown * shown, last = c;
+      if (result.coverage >= opaque) return finished();
     }
   }
-  return result;
+  return finished();
 }
 
 /// The look-ups with positive weight: the largest `max_weighted_lookups`, in paste order.
@@ -323,6 +351,11 @@ LayerValue composite_weights(const LayerReader& reader, std::span<const Lookup> 
   for (int c = 0; c < reader.components; ++c) result.value[c] = coverage * mean[c];
   result.coverage = coverage;
   result.lookups_read = kept.count;
+  if (blend.preserves_variance() && kept.count > 1) {
+    float squares = 0;
+    for (int i = 0; i < kept.count; ++i) squares += kept.weight[i] * kept.weight[i];
+    preserve_variance(reader, *kept.lookup[0], kept.sight[0].w, squares * (coverage / sum) * (coverage / sum), result);
+  }
   return result;
 }
 

@@ -24,6 +24,7 @@ struct LayerReader {
   struct Source {
     std::vector<TexelGrid> level;    ///< finest first
     std::vector<TexelGrid> gaussian; ///< the twins in standard deviations, same levels; empty without
+    TexelGrid mean;                  ///< over the axes that Blend::mean_over names, of the finest; unset without
   };
   /// A patch: exemplar coordinates are scale · w + offset (its frame, then the layer's evaluation).
   struct PatchReader {
@@ -41,6 +42,7 @@ struct LayerReader {
   int components = 0;
   int height_component = -1; ///< of the first height channel
   bool has_directions = false;
+  std::array<bool, max_components> preserved{}; ///< components whose mean and variance mixing preserves
 
   LayerReader(LayerReader&&) = default; ///< `patch` points into vectors whose memory moves along
   LayerReader(const LayerReader&) = delete;

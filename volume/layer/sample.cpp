@@ -43,6 +43,35 @@ TexelGrid texel_grid(const Exemplar& exemplar, std::span<const std::uint8_t> tex
   return grid;
 }
 
+TexelGrid mean_grid(const TexelGrid& grid, const std::array<bool, 4>& over) {
+  TexelGrid mean = grid;
+  std::uint32_t stride = grid.components;
+  for (int axis = 0; axis < 4; ++axis) {
+    if (over[axis]) {
+      mean.texels[axis] = 1;
+      mean.count[axis] = 1;
+      mean.before[axis] = mean.behind[axis] = 0;
+    }
+    mean.stride[axis] = static_cast<std::int32_t>(stride);
+    stride *= mean.count[axis];
+  }
+  std::vector<double> sum(stride, 0.0);
+  std::array<int, 4> at{};
+  const auto kept = [&](int axis) { return over[axis] ? 0u : std::uint32_t(at[axis]) * mean.stride[axis]; };
+  const std::uint16_t* texel = grid.texel.data();
+  for (at[3] = 0; at[3] < grid.count[3]; ++at[3])
+    for (at[2] = 0; at[2] < grid.count[2]; ++at[2])
+      for (at[1] = 0; at[1] < grid.count[1]; ++at[1])
+        for (at[0] = 0; at[0] < grid.count[0]; ++at[0], texel += grid.components) {
+          double* row = sum.data() + kept(0) + kept(1) + kept(2) + kept(3);
+          for (int c = 0; c < grid.components; ++c) row[c] += texel[c];
+        }
+  const double share = static_cast<double>(stride) / static_cast<double>(grid.texel.size() - 3);
+  mean.texel.resize(stride + 3);
+  for (std::uint32_t i = 0; i < stride; ++i) mean.texel[i] = static_cast<std::uint16_t>(std::lrint(sum[i] * share));
+  return mean;
+}
+
 DecodeTable decode_table(const Exemplar& exemplar) {
   DecodeTable table;
   for (const Channel& channel : exemplar.channel) {

@@ -29,6 +29,9 @@ DecodeTable decode_table(const Exemplar& exemplar);
 
 TexelGrid texel_grid(const Exemplar& exemplar, std::span<const std::uint8_t> texels, const DecodeTable& decode);
 
+/// The means over some axes: one texel along each of those.
+TexelGrid mean_grid(const TexelGrid& grid, const std::array<bool, 4>& over);
+
 /// The texels around a position: per axis the offsets of the two and the weight of the second.
 struct TexelCell {
   IntLanes low, high;
