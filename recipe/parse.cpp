@@ -187,8 +187,8 @@ void read_frame(const JsonNode& node, FrameOptions& frame) {
 }
 
 void read_fill(const JsonNode& node, LapOptions& fill) {
-  node.object({"frame_tolerance", "scale_tolerance", "sample_spacing", "coverage_order", "mask_variants", "align", "preserve_variance",
-               "max_attempts"});
+  node.object({"frame_tolerance", "scale_tolerance", "sample_spacing", "coverage_order", "mask_variants", "align",
+               "preserve_variance", "structured", "max_attempts"});
   node.optional_number("frame_tolerance", fill.frame_tolerance, {0, pi, true, "above 0, to pi", "give radians"});
   node.optional_number("scale_tolerance", fill.scale_tolerance,
                        {1, endless, true, "above 1", "give a ratio of two scales"});
@@ -196,6 +196,7 @@ void read_fill(const JsonNode& node, LapOptions& fill) {
   node.optional_whole("coverage_order", fill.coverage_order, 1, 16, "8 samples each tet edge eight times");
   node.optional_whole("mask_variants", fill.mask_variants, 1, 64, "give a number of outlines");
   if (const auto align = node.find("align")) fill.align = align->boolean();
+  if (const auto structured = node.find("structured")) fill.structured = structured->boolean();
   if (const auto preserve = node.find("preserve_variance")) fill.preserve_variance = preserve->boolean();
   node.optional_whole("max_attempts", fill.max_attempts, 1, 1000, "give a number of pastes");
 }

@@ -6,10 +6,12 @@
 
 namespace pith {
 
-/// The exemplar at two resolutions, for comparing.
+/// The exemplar at two or three resolutions, for comparing.
 class Aligner {
 public:
-  explicit Aligner(const Exemplar& exemplar);
+  /// `structured`: compares wherever the paste overlaps older ones, and searches so finely that joints of a 64th of a
+  /// texture width find one another (LapOptions::structured).
+  explicit Aligner(const Exemplar& exemplar, bool structured = false);
 
   /// Offsets of patch.frame along the axes that are `free`, which repeat; `random` stands in where the paste meets
   /// nothing yet, and along the others.
@@ -17,7 +19,8 @@ public:
                              const std::array<bool, 3>& free, const std::array<float, 4>& random) const;
 
 private:
-  Exemplar coarse_, fine_;
+  bool structured_;
+  std::vector<Exemplar> level_; ///< coarsest first
 };
 
 } // namespace pith

@@ -13,6 +13,7 @@
 #include "volume/lap/align.h"
 #include "volume/lap/pastes.h"
 #include "volume/lap/pivots.h"
+#include "volume/lap/seam_cut.h"
 
 #include <algorithm>
 #include <bit>
@@ -104,8 +105,9 @@ class Filler {
 public:
   Filler(const LapInput& input, const Exemplar& exemplar, const LapOptions& options)
       : input_(input), options_(options), traits_(traits_of(options.type)),
-        mesh_(simplices_of(input.mesh, input.region)), pastes_(mesh_, coverage(), masks_of(options)),
-        aligner_(exemplar), attempts_(mesh_.count, 0), failures_(mesh_.count, 0), workspace_(most_seeds) {
+        mesh_(simplices_of(input.mesh, input.region)),
+        pastes_(mesh_, coverage(), masks_of(options), options.structured), aligner_(exemplar, options.structured),
+        attempts_(mesh_.count, 0), failures_(mesh_.count, 0), workspace_(most_seeds) {
     field_.frames = {.axes = input.axes,
                      .fixed_axes = traits_.fixed_axes,
                      .fixed_axis = traits_.fixed_axis,
@@ -123,6 +125,8 @@ public:
     std::sort(queue_.begin(), queue_.end(),
               [&](auto a, auto b) { return std::pair(priority[a], a) < std::pair(priority[b], b); });
   }
+
+  const Simplices& simplices() const { return mesh_; }
 
   LapResult run(const Progress& progress) {
     const double all = static_cast<double>(std::max<std::size_t>(1, queue_.size()));
@@ -148,6 +152,8 @@ public:
 private:
   static constexpr std::size_t most_seeds = 16; ///< in one round; fixed, so that the result is
 
+public:
+  /// With nothing covered yet.
   Coverage coverage() const {
     std::vector<float> size(mesh_.count, -1.0f);
     parallel_for(mesh_.count, 4096, [&](std::size_t s) {
@@ -163,19 +169,31 @@ private:
     return Coverage(mesh_.corners, size, options_.sample_spacing, options_.coverage_order);
   }
 
+private:
   /// Open simplices in order of priority that keep a texture width from one another (§5.2.3).
   std::vector<std::uint32_t> next_seeds() {
     std::erase_if(queue_, [&](std::uint32_t s) { return !pastes_.coverage().open(s); });
     std::vector<std::uint32_t> seeds;
-    for (std::size_t i = 0; i < queue_.size() && i < 4096 && seeds.size() < most_seeds; ++i) {
+    for (std::size_t i = 0; i < queue_.size() && (i < 4096 || options_.structured) && seeds.size() < most_seeds;
+         ++i) {
       const std::uint32_t s = queue_[i];
+      if (options_.structured && pastes_.count() > 0 && !at_front(s)) continue;
       const bool apart = std::all_of(seeds.begin(), seeds.end(), [&](std::uint32_t other) {
         const double reach = 0.6 * (input_.scale[s] + input_.scale[other]);
         return (mesh_.center[s] - mesh_.center[other]).squaredNorm() > reach * reach;
       });
       if (apart) seeds.push_back(s);
+      if (options_.structured && pastes_.count() == 0) break;
     }
+    if (seeds.empty()) seeds.push_back(queue_.front());
     return seeds;
+  }
+
+  /// Partly covered: a piece there can continue what is pasted. A structured fill grows from its first piece, as
+  /// pieces with nothing between them could not be brought into line later.
+  bool at_front(std::uint32_t s) const {
+    const auto shining = pastes_.coverage().shining(s);
+    return std::any_of(shining.begin(), shining.end(), [](float through) { return through < 0.5f; });
   }
 
   void paste(const std::vector<std::uint32_t>& seeds) {
@@ -315,19 +333,29 @@ private:
 
 LapResult lap(const LapInput& input, const Exemplar& exemplar, const LapOptions& options, const Progress& progress) {
   check(input, exemplar, options);
-  LapResult result;
+  const TextureTraits& traits = traits_of(options.type);
+  const auto named = [&](LapResult result) {
+    result.layer.name = exemplar.name;
+    result.layer.exemplar.push_back(exemplar);
+    return result;
+  };
   if (options.type == TextureType::tensor_2d) { // nothing tiles: one paste shows the whole exemplar
+    LapResult result;
     result.layer = affine_layer(input);
     result.statistics.pastes = 1;
     result.statistics.lookups = result.layer.lookup.size();
     result.statistics.median_share_used = 1;
-  } else {
-    result = Filler(input, exemplar, options).run(progress);
-    if (options.preserve_variance)
-      for (int a = 0; a < 3; ++a) result.layer.blend.mean_over[a] = !traits_of(options.type).imposed[a];
+    return named(std::move(result));
   }
-  result.layer.name = exemplar.name;
-  result.layer.exemplar.push_back(exemplar);
+  Filler filler(input, exemplar, options);
+  LapResult result = named(filler.run(progress));
+  if (options.preserves_variance())
+    for (int a = 0; a < 3; ++a) result.layer.blend.mean_over[a] = !traits.imposed[a];
+  if (options.structured) {
+    cut_seams(filler.simplices(), filler.coverage(), result.layer);
+    result.statistics.lookups = result.layer.lookup.size();
+    result.statistics.pastes = result.layer.patch.size();
+  }
   return result;
 }
 

@@ -8,6 +8,7 @@
 #include "volume/mesh/boundary.h"
 #include "volume/mesh/tet_mesh.h"
 
+#include <optional>
 #include <span>
 #include <string>
 
@@ -39,8 +40,15 @@ struct LapOptions {
   int coverage_order = 12; ///< most samples per tet edge in that test; order 8 gives the paper's 165 points, between
                            ///< which coarse tets keep holes
   bool align = true;       ///< choose each paste's phase so that it continues what is already there; false: at random
-  bool preserve_variance = true; ///< where pieces mix (Blend::mean_over); false: as the paper, which loses contrast there
-  int max_attempts = 24;   ///< pastes on one tet before the fill is given up; a third of them keep to all rules
+  /// For exemplars with a structure that shows when it breaks (bricks, cells): phases are searched more finely and
+  /// pieces are cut along seams that follow the structure (seam_cut.h). Takes several times as long, and each piece
+  /// has a mask of its own.
+  bool structured = false;
+  /// Where pieces mix, keep mean and variance (Blend::mean_over); false: as the paper, which loses contrast there.
+  /// Unset: true unless structured, as pieces that match are alike where they meet and would gain contrast.
+  std::optional<bool> preserve_variance{};
+  bool preserves_variance() const { return preserve_variance.value_or(!structured); }
+  int max_attempts = 24; ///< pastes on one tet before the fill is given up; a third of them keep to all rules
 };
 
 struct LapStatistics {

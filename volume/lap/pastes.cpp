@@ -6,9 +6,9 @@
 
 namespace pith {
 
-Pastes::Pastes(const Simplices& mesh, Coverage coverage, std::vector<Mask> masks)
+Pastes::Pastes(const Simplices& mesh, Coverage coverage, std::vector<Mask> masks, bool keep_hidden)
     : mesh_(mesh), coverage_(std::move(coverage)), masks_(std::move(masks)), grids_(masks_.begin(), masks_.end()),
-      axes_(masks_.front().axes), newest_(mesh.count, none) {
+      axes_(masks_.front().axes), keep_hidden_(keep_hidden), newest_(mesh.count, none) {
   for (const Mask& mask : masks_)
     mask_volume_.push_back(std::accumulate(mask.alpha.begin(), mask.alpha.end(), 0.0) / 255 / mask.alpha.size());
 }
@@ -42,14 +42,14 @@ void Pastes::look(Paste& paste) const {
       used += std::abs(image) / 6 * alpha_at({0.25f, 0.25f, 0.25f, 0.25f});
     }
     const std::uint32_t simplex = clump.simplex[s];
-    if (!coverage_.open(simplex)) continue;
+    if (!coverage_.open(simplex) && !keep_hidden_) continue;
     const auto samples = coverage_.samples(simplex);
     const auto shining = coverage_.shining(simplex);
     const std::size_t start = paste.let_through.size();
     bool seen = false;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const float alpha = alpha_at(samples[i]);
-      seen |= alpha > 0 && shining[i] > 1 / 512.0f;
+      seen |= alpha > 0 && (shining[i] > 1 / 512.0f || keep_hidden_);
       paste.let_through.push_back(1 - alpha);
     }
     if (seen) {
@@ -74,7 +74,7 @@ void Pastes::commit(const Paste& paste) {
     const std::size_t samples = coverage_.samples(simplex).size();
     const std::span<const float> let_through(paste.let_through.data() + at, samples);
     at += samples;
-    if (!coverage_.open(simplex)) continue; // closed by a paste of the same round
+    if (!coverage_.open(simplex) && !keep_hidden_) continue; // closed by a paste of the same round
     Lookup lookup;
     lookup.patch = patch;
     for (int i = 0; i < n; ++i) {

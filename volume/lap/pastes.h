@@ -20,7 +20,8 @@ struct Paste {
 /// Pastes in order, newest beneath (see lap.h). Reading is safe from many threads between two commits.
 class Pastes {
 public:
-  Pastes(const Simplices& mesh, Coverage coverage, std::vector<Mask> masks);
+  /// `keep_hidden`: keep look-ups also where older pastes hide them, so that seams can be moved afterwards.
+  Pastes(const Simplices& mesh, Coverage coverage, std::vector<Mask> masks, bool keep_hidden = false);
 
   const Coverage& coverage() const { return coverage_; }
   const std::vector<Mask>& masks() const { return masks_; }
@@ -37,7 +38,7 @@ public:
   /// until it returns false.
   template <class Visit>
   void visit(std::uint32_t simplex, const std::array<float, 4>& barycentric, const Visit& see) const {
-    std::array<std::uint32_t, 64> row;
+    std::array<std::uint32_t, 256> row;
     std::size_t rows = 0;
     for (std::uint32_t node = newest_[simplex]; node != none && rows < row.size(); node = older_[node])
       row[rows++] = node;
@@ -64,6 +65,7 @@ private:
   std::vector<MaskGrid> grids_;
   std::vector<double> mask_volume_;
   int axes_;
+  bool keep_hidden_;
   std::vector<Patch> patch_;
   LargeArray<float> corner_;
   std::vector<Lookup> lookup_;        ///< in order of commit
