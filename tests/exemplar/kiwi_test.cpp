@@ -244,10 +244,30 @@ TEST(Kiwi, BadOptionsAreRefused) {
   EXPECT_THROW(procedural_exemplar("kiwi", {.resolution = 15}), InvalidInput);
   EXPECT_THROW(procedural_exemplar("kiwi", {.resolution = 513}), InvalidInput);
   EXPECT_THROW(procedural_exemplar("kumquat"), InvalidInput);
-  const std::vector<std::string> names{
-      "kiwi",  "kiwi-flesh", "carrot",       "tree",   "watermelon", "watermelon-flesh", "tube",    "sandstone",
-      "shale", "limestone",  "conglomerate", "sponge", "cream",      "chocolate",        "mineral", "ripening",
-      "brick", "pepper",     "banana",       "citrus", "kiwi-seed",  "watermelon-seed",  "almond"};
+  const std::vector<std::string> names{"kiwi",
+                                       "kiwi-flesh",
+                                       "carrot",
+                                       "tree",
+                                       "watermelon",
+                                       "watermelon-flesh",
+                                       "watermelon-striped", // fruit and wood
+                                       "tube",
+                                       "sandstone",
+                                       "shale",
+                                       "limestone",
+                                       "conglomerate",
+                                       "sponge",
+                                       "cream",
+                                       "chocolate", // and stone, cake
+                                       "mineral",
+                                       "ripening",
+                                       "brick",
+                                       "pepper",
+                                       "banana",
+                                       "citrus", // and more
+                                       "kiwi-seed",
+                                       "watermelon-seed",
+                                       "almond"};
   EXPECT_EQ(procedural_names(), names);
 }
 

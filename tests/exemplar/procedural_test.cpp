@@ -118,8 +118,8 @@ TEST(ProceduralTypes, RepeatAlongTheAxesThatTheirTypeLeavesFree) {
   for (const char* name :
        {"sponge", "cream", "chocolate", "limestone", "conglomerate", "sandstone", "shale", "tube", "brick"})
     EXPECT_EQ(repeats(name), "rrr") << name;
-  for (const char* name :
-       {"kiwi", "kiwi-flesh", "carrot", "tree", "watermelon", "watermelon-flesh", "pepper", "banana", "citrus"})
+  for (const char* name : {"kiwi", "kiwi-flesh", "carrot", "tree", "watermelon", "watermelon-flesh",
+                           "watermelon-striped", "pepper", "banana", "citrus"})
     EXPECT_EQ(repeats(name), "rcr") << name;
   EXPECT_EQ(repeats("mineral"), "rcc");
   for (const char* name : {"ripening", "kiwi-seed", "watermelon-seed", "almond"})
@@ -140,6 +140,7 @@ TEST(ProceduralTypes, ThoseWithoutDirectionAreAlikeAlongEveryAxis) {
 TEST(ProceduralTypes, GrainRunsWhereTheTypeSays) {
   for (const char* name : {"tube", "tree", "carrot", "banana"}) // fibres along T
     EXPECT_GT(mean_step(exemplar_of(name), 0), 1.25 * mean_step(exemplar_of(name), 2)) << name;
+  EXPECT_GT(mean_step(exemplar_of("watermelon-striped"), 0), 1.25 * mean_step(exemplar_of("watermelon-striped"), 2));
   for (const char* name : {"sandstone", "shale"}) { // layers across S
     EXPECT_GT(mean_step(exemplar_of(name), 1), 1.25 * mean_step(exemplar_of(name), 0)) << name;
     EXPECT_GT(mean_step(exemplar_of(name), 1), 1.25 * mean_step(exemplar_of(name), 2)) << name;
@@ -210,6 +211,25 @@ TEST(ProceduralChannels, AlphaHoldsAWholeThing) {
     EXPECT_GT(volume / (double(n) * n * n), 0.02) << name;
     EXPECT_LT(volume / (double(n) * n * n), 0.25) << name;
   }
+}
+
+TEST(ProceduralLayers, AWatermelonsStripesRunFromEndToEnd) {
+  // On the skin some lines along T are nearly all dark, others have next to nothing dark: one stripe in the width.
+  const Exemplar& e = exemplar_of("watermelon-striped", 64);
+  std::vector<double> dark(64, 0.0);
+  for (int z = 0; z < 64; ++z)
+    for (int x = 0; x < 64; ++x) dark[x] += e.at(x, 0, z)[1] < 110 ? 1.0 / 64 : 0.0;
+  const auto [least, most] = std::minmax_element(dark.begin(), dark.end());
+  EXPECT_GT(*most, 0.8);
+  EXPECT_LT(*least, 0.2);
+  int borders = 0;
+  for (int x = 0; x < 64; ++x) borders += (dark[x] > 0.5) != (dark[(x + 1) % 64] > 0.5);
+  EXPECT_EQ(borders, 2);
+  const auto at = [&](double outer, double inner) { return mean_color(e, 1 - outer * outer, 1 - inner * inner); };
+  const auto rind = at(0.95, 0.92), flesh = at(0.7, 0.4), core = at(0.12, 0);
+  EXPECT_GT(rind[1], 0.8 * rind[0]) << "its rind is pale";
+  EXPECT_GT(flesh[0], 4 * flesh[1]) << "its flesh is red";
+  EXPECT_GT(core[1], 1.3 * flesh[1]) << "and paler in the middle";
 }
 
 TEST(ProceduralChannels, FleshWithoutSeedsIsTheFleshBetweenSeeds) {

@@ -15,6 +15,7 @@ Exemplar tree_exemplar(const ProceduralOptions& options); ///< beside colour: he
 Exemplar pepper_exemplar(const ProceduralOptions& options);
 Exemplar banana_exemplar(const ProceduralOptions& options);
 Exemplar citrus_exemplar(const ProceduralOptions& options);
+Exemplar watermelon_striped_exemplar(const ProceduralOptions& options);
 // Type 1-b.
 Exemplar watermelon_exemplar(const ProceduralOptions& options, bool seeds);
 // Type 2-c and 2-d.

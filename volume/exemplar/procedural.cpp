@@ -21,6 +21,7 @@ constexpr Generator generators[] = {
     {"tree", tree_exemplar},
     {"watermelon", [](const ProceduralOptions& options) { return watermelon_exemplar(options, true); }},
     {"watermelon-flesh", [](const ProceduralOptions& options) { return watermelon_exemplar(options, false); }},
+    {"watermelon-striped", watermelon_striped_exemplar},
     {"tube", tube_exemplar},
     {"sandstone", sandstone_exemplar},
     {"shale", shale_exemplar},

@@ -17,6 +17,7 @@ struct ProceduralOptions {
 /// kiwi, carrot, tree, pepper, banana, citrus    type 2-b: y is the depth (0 skin, 1 core), z runs along
 /// kiwi-flesh                                    the same without seeds
 /// watermelon, watermelon-flesh                  type 1-b: y is the depth; with seeds, and without
+/// watermelon-striped                            type 2-b: y is the depth, the skin's stripes run along z; no seeds
 /// tube, sandstone, shale, brick                 type 2-a: fibres along z; layers and courses across y
 /// limestone, conglomerate                       type 0: pebbles
 /// sponge, cream, chocolate                      type 0: of a cake

@@ -105,17 +105,18 @@ Exemplar kiwi_seed_exemplar(const ProceduralOptions& options) {
 
 Exemplar watermelon_seed_exemplar(const ProceduralOptions& options) {
   const SeedShape shape{
-      .half_length = 0.46f, .broad = 0.29f, .thin = 0.115f, .taper = 0.38f, .veil = 0, .veil_alpha = 0};
-  const Color dark = measured(32, 18, 14), brown = measured(74, 44, 28), rim = measured(120, 82, 50),
-              kernel = measured(224, 208, 176);
+      .half_length = 0.40f, .broad = 0.25f, .thin = 0.118f, .taper = 0.48f, .veil = 0.06f, .veil_alpha = 0.5f};
+  const Color dark = measured(22, 13, 11), brown = measured(58, 34, 23), rim = measured(92, 60, 38),
+              kernel = measured(74, 52, 38), veil = measured(178, 26, 34);
   const PeriodicNoise grain(hash_of(options.seed, 0x3e1), 18, 26, 18), cloud(hash_of(options.seed, 0x3e2), 4, 5, 4);
-  return seed_exemplar("watermelon-seed", options, shape, [=](float r, float s, float t, float depth, float) {
+  return seed_exemplar("watermelon-seed", options, shape, [=](float r, float s, float t, float depth, float body) {
     const float fine = grain.value(r + 0.5f, s + 0.5f, t + 0.5f), slow = cloud.value(r + 0.5f, s + 0.5f, t + 0.5f);
     Color color = mixed(dark, brown, std::clamp(0.30f + 0.20f * fine + 0.35f * slow, 0.0f, 1.0f));
-    // A paler rim along the edge of the broad side, and a cream kernel inside the shell.
-    const float across = std::fabs(r) / 0.115f;
-    color = mixed(color, rim, 0.5f * (1.0f - ramp(0.15f, 0.4f, across)) * (1.0f - ramp(0.03f, 0.06f, depth)));
-    return mixed(color, kernel, ramp(0.045f, 0.060f, depth));
+    // A paler rim along the edge of the broad side, a brown kernel inside the shell, wet and deeper red flesh around.
+    const float across = std::fabs(r) / shape.thin;
+    color = mixed(color, rim, 0.4f * (1.0f - ramp(0.15f, 0.4f, across)) * (1.0f - ramp(0.02f, 0.045f, depth)));
+    color = mixed(color, kernel, 0.6f * ramp(0.050f, 0.075f, depth));
+    return mixed(veil, color, body);
   });
 }
 

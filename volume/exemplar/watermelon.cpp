@@ -1,4 +1,5 @@
-// A watermelon, type 1-b: the material changes with depth and is alike in all directions across it. Rind and flesh
+// Watermelons. Type 1-b: the material changes with depth and is alike in all directions across it, so that the skin
+// is blotched. Type 2-b: the skin's stripes and the flesh's threads run along T, from pole to pole. Rind and flesh
 // after a photograph of wedges (BSD-3, the Flutter sample Veggie Seasons).
 #include "volume/exemplar/paint.h"
 #include "volume/exemplar/painters.h"
@@ -20,8 +21,7 @@ struct Watermelon {
 
   Material at(float x, float y, float z) const {
     const float slow = cloud(x, y, z), edge = border(x, y, z);
-    const float radius =
-        std::clamp(radius_at_depth(y) + 0.012f * edge * ramp(0.99f, 0.9f, radius_at_depth(y)), 0.0f, 1.0f);
+    const float radius = radius_at(x, y, z);
     Rgb color = color_at(flesh, radius);
 
     // Juice cells: bright grains with darker walls; they fade out into the rind.
@@ -48,6 +48,12 @@ struct Watermelon {
       color = mixed(skin, color, ramp(0.8f * skin_end, 2.2f * skin_end, y));
     }
     return material(color);
+  }
+
+  /// The part of the radius, a little uneven where one material goes over into another.
+  float radius_at(float x, float y, float z) const {
+    const float radius = radius_at_depth(y);
+    return std::clamp(radius + 0.012f * border(x, y, z) * ramp(0.99f, 0.9f, radius), 0.0f, 1.0f);
   }
 
   /// Seeds lie in a shell of the flesh; each is a flattened drop that points to the middle, in a small pale hollow.
@@ -97,11 +103,98 @@ struct Watermelon {
   Rgb seed_color = measured(38, 20, 14), seed_rim = measured(92, 56, 34), hollow_color = measured(244, 140, 124);
 };
 
+/// The same fruit with a direction. Around a fruit lie about 4π texture widths, so one dark stripe in each.
+struct StripedWatermelon {
+  explicit StripedWatermelon(std::uint64_t seed)
+      : flesh(seed, false), sway(hash_of(seed, 11), {2, 1, 2}, 2, tile_around),
+        jag(hash_of(seed, 12), {6, 1, 9}, 3, tile_around), swell(hash_of(seed, 13), {2, 1, 3}, 2, tile_around),
+        mottle(hash_of(seed, 14), {14, 1, 9}, 3, tile_around), net(hash_of(seed, 15), {14, 1, 6}, 0.48f, tile_around),
+        fleck(hash_of(seed, 16), {60, 1, 44}, 2, tile_around), thread(hash_of(seed, 17), {34, 26, 4}, 2, tile_around),
+        cells(hash_of(seed, 18), {30, 34, 17}, 0.48f, tile_around),
+        patch(hash_of(seed, 19), {4, 4, 2}, 3, tile_around) {}
+
+  Material at(float x, float y, float z) const {
+    const float edge = flesh.border(x, y, z);
+    const float radius = flesh.radius_at(x, y, z);
+    const float red = 1.0f - ramp(0.80f, 0.90f, radius);
+    Rgb color = color_at(stops, radius);
+
+    // Soft clouds, and juice cells that are drawn out along the axis, each of its own brightness, walls paler. On the
+    // axis itself all of R lies in one place, so that nothing of it may be seen there.
+    const float cloud = patch(x, y, z), celled = red * ramp(0.02f, 0.22f, radius);
+    color = mixed(color, pale, red * 0.34f * ramp(0.05f, 0.65f, cloud));
+    color = mixed(color, deep, red * 0.40f * ramp(0.05f, 0.65f, -cloud));
+    const ScatteredPoints::Nearest cell = cells.nearest(x, y, z);
+    const float own = uniform_of(cell.hash) - 0.5f;
+    color = scaled(color, 1.0f + celled * (0.17f * own + 0.22f * flesh.grain(x, y, z)));
+    color = mixed(color, flesh.sparkle, celled * 0.13f * (1.0f - ramp(0.0f, 0.22f, cell.second - cell.first)));
+    color = mixed(color, flesh.sparkle, celled * 0.40f * ramp(0.34f, 0.08f, cell.first) * ramp(0.28f, 0.46f, own));
+    // Threads along the axis: pale bundles, most of them where the seeds hang and under the rind.
+    const float threads = ramp(0.22f, 0.62f, thread(x, y, z));
+    color = mixed(color, flesh.vein, threads * celled * (0.14f + 0.26f * band(0.52f, 0.84f, 0.10f, radius)));
+    color = scaled(color, 1.0f + (1.0f - red) * (0.05f * flesh.grain(x, y, z) + 0.03f * cloud));
+
+    const float skin_end = 0.015f + 0.003f * edge;
+    if (y < 3.0f * skin_end) color = mixed(skin_at(x, z), color, ramp(0.8f * skin_end, 2.2f * skin_end, y));
+    return material(color);
+  }
+
+  /// Dark stripes with torn edges on light green that is netted and flecked with the dark.
+  Rgb skin_at(float x, float z) const {
+    const float torn = jag(x, 0, z), blot = mottle(x, 0, z), fine = fleck(x, 0, z);
+    const float place = x + 0.09f * sway(x, 0, z);
+    const float across = std::fabs(place - std::floor(place) - 0.5f); // 0 in the middle of a stripe
+    const float half = 0.215f + 0.05f * swell(x, 0, z);
+    const float stripe = ramp(0.030f, -0.030f, across - half - 0.15f * torn - 0.05f * blot);
+    // Between the stripes: a net of thin dark lines that thickens towards them.
+    const ScatteredPoints::Nearest mesh = net.nearest(x + 0.02f * blot, 0.5f, z + 0.02f * torn);
+    const float near_stripe = ramp(0.5f, 0.25f, across);
+    const float line = 1.0f - ramp(0.02f, 0.10f + 0.10f * near_stripe, mesh.second - mesh.first);
+    Rgb light = mixed(skin_light, skin_pale, ramp(-0.4f, 0.5f, blot + 0.4f * fine));
+    light = mixed(light, skin_dark, (0.10f + 0.30f * near_stripe) * line * ramp(-0.5f, 0.4f, blot));
+    light = mixed(light, skin_dark, 0.30f * ramp(0.15f, 0.6f, fine + 0.3f * near_stripe));
+    const Rgb dark = mixed(skin_dark, skin_middle, 0.75f * ramp(0.02f, 0.55f, -blot + 0.25f * fine));
+    return scaled(mixed(light, dark, stripe), 1.0f + 0.07f * fine);
+  }
+
+  Watermelon flesh;
+  FractalNoise sway, jag, swell, mottle;
+  ScatteredPoints net;
+  FractalNoise fleck, thread;
+  ScatteredPoints cells;
+  FractalNoise patch;
+
+  std::array<Stop, 12> stops{{{0.00f, measured(240, 112, 102)},
+                              {0.12f, measured(236, 90, 84)},
+                              {0.28f, measured(230, 66, 64)},
+                              {0.55f, measured(224, 54, 54)},
+                              {0.78f, measured(226, 60, 58)},
+                              {0.85f, measured(232, 96, 84)},
+                              {0.885f, measured(240, 170, 142)},
+                              {0.915f, measured(240, 224, 190)},
+                              {0.945f, measured(232, 236, 196)},
+                              {0.97f, measured(204, 222, 150)},
+                              {0.985f, measured(150, 186, 92)},
+                              {1.00f, measured(96, 142, 54)}}};
+  Rgb pale = measured(242, 118, 108), deep = measured(206, 34, 42);
+  Rgb skin_dark = measured(20, 52, 22), skin_middle = measured(44, 88, 36), skin_light = measured(128, 164, 82),
+      skin_pale = measured(170, 194, 118);
+};
+
 } // namespace
 
 Exemplar watermelon_exemplar(const ProceduralOptions& options, bool seeds) {
   const Watermelon watermelon(options.seed, seeds);
   return painted({.name = seeds ? "watermelon" : "watermelon-flesh",
+                  .wrap = wrap_around,
+                  .skin = true,
+                  .at = [&](float x, float y, float z) { return watermelon.at(x, y, z); }},
+                 options);
+}
+
+Exemplar watermelon_striped_exemplar(const ProceduralOptions& options) {
+  const StripedWatermelon watermelon(options.seed);
+  return painted({.name = "watermelon-striped",
                   .wrap = wrap_around,
                   .skin = true,
                   .at = [&](float x, float y, float z) { return watermelon.at(x, y, z); }},
