@@ -207,7 +207,7 @@ quality_row() { # NAME
     }
     function slice(key) { return told(key "coherence", 2, 1.3) " / " told(key "sliced Wasserstein", 2, 1.3) }
     /^  [^ ]/ { things = /\(layer things / }
-    !/^    / || things { next }
+    !/^    / || (things && !/things that are whole/) { next }
     {
       split(substr($0, 5), words, /   +/)
       measure = words[1]
@@ -224,13 +224,15 @@ quality_row() { # NAME
     measure ~ /^angle of axis .*median/ { worst("median", value) }
     measure ~ /^angle of axis .*percentile/ { worst("p95", value) }
     measure ~ /^(across [RST]|oblique|near the core): / { worst(measure, value) }
+    measure == "things that are whole" { worst("whole", value, 1) }
     measure == "variance where patches mix ÷ interiors" { worst("variance", value, 1) }
     measure ~ /^99th percentile of the gradient/ { worst("gradient", value) }
     END {
       printf "| %s | %s / %s | %s | %s | %s / %s |", name, told("holes", 0, 0), told("thin", 0, 0), told("p99", 0, 25),
         told("used", 0, 70, 1), told("median", 1, 3), told("p95", 1, 15)
       printf " %s | %s | %s | %s |", slice("across R: "), slice("across S: "), slice("across T: "), slice("oblique: ")
-      printf " %s | %s | %s |\n", told("variance", 2, 0.9, 1), told("gradient", 2, 1.1), slice("near the core: ")
+      printf " %s | %s | %s | %s |\n", told("variance", 2, 0.9, 1), told("gradient", 2, 1.1), slice("near the core: "),
+        told("whole", 0, 95, 1)
     }'
 }
 
@@ -247,8 +249,8 @@ quality() {
     "$pith" make "data/recipes/$name.json" -o "$model.pith" >&2
     "$pith" info --quality "$model.pith" >"$model.txt"
   done
-  echo "| model | holes / thin | layers | used | axes | across R | across S | across T | oblique | variance | gradient | near axis |"
-  echo "|---|---|---|---|---|---|---|---|---|---|---|---|"
+  echo "| model | holes / thin | layers | used | axes | across R | across S | across T | oblique | variance | gradient | near axis | things |"
+  echo "|---|---|---|---|---|---|---|---|---|---|---|---|---|"
   for name in "$@"; do quality_row "$name" <"$out/${name//\//-}.txt"; done
 }
 

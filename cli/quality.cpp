@@ -6,6 +6,7 @@
 #include "volume/measure/objects.h"
 #include "volume/measure/seams.h"
 #include "volume/measure/slice_metric.h"
+#include "volume/measure/things.h"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -130,7 +131,23 @@ void add_coverage(const Root& root, const Session& session, Figures& figures) {
   figures.add("exemplar reads per point, 99th percentile", c.p99_reads);
 }
 
-void add_fast(const Root& root, const Layer& layer, const SolidFacts& facts, Figures& figures) {
+void add_things(const Root& root, const Layer& layer, const Session& session, Figures& figures) {
+  const auto m = thing_measure(root, layer, {.seed = session.seed.value_or(1)}, session.progress("things"));
+  if (!m) return;
+  figures.section(layer.name, "things");
+  const std::size_t inside = m->things - m->cut_by_skin;
+  figures.add("things that are whole", 100 * m->whole_share(), "%", at_least(95),
+              fmt::format("{} of {}", m->whole, inside) +
+                  (m->whole < inside ? fmt::format(": {} sliced, {} hidden, {} bent; the first near {}", m->sliced,
+                                                   m->hidden, m->bent, text_of(m->first_broken))
+                                     : ""));
+  figures.add("missing part of a thing", m->missing);
+  figures.add("missing part of the worst thing", m->worst);
+  figures.add("things cut by the skin", static_cast<double>(m->cut_by_skin));
+}
+
+void add_fast(const Root& root, const Layer& layer, const SolidFacts& facts, const Session& session,
+              Figures& figures) {
   const Model& model = root.model();
   figures.section(layer.name, "pastes");
   const MaskUse use = mask_use(model.mesh, layer);
@@ -140,7 +157,10 @@ void add_fast(const Root& root, const Layer& layer, const SolidFacts& facts, Fig
     figures.add("seen share of a mask, median", use.median_seen);
     figures.add("seen share of a mask, 5th percentile", use.p5_seen);
   }
-  if (holds_things(layer)) return;
+  if (holds_things(layer)) {
+    add_things(root, layer, session, figures);
+    return;
+  }
   if (const auto d = distortion_measure(model, layer)) {
     figures.section(layer.name, "maps against the fields, away from singular places");
     const std::array<bool, 3> imposed = imposed_axes(facts.type);
@@ -246,7 +266,7 @@ Json quality_of(ModelFile file, const Session& session) {
       if (layer.domain != Domain::solid || layer.width != 3 || layer.exemplar.front().texel_count() < 2) continue;
       const SolidFacts facts = facts_of(recipe, std::max(layer.region, 0));
       if (part == 0) {
-        add_fast(root, layer, facts, figures);
+        add_fast(root, layer, facts, session, figures);
       } else {
         if (!holds_things(layer)) add_slow(root, layer, facts, session, figures);
       }
