@@ -279,7 +279,12 @@ private:
     KeyMaker maker = run_.key("exemplar");
     if (source.file.empty()) return maker.add(source.procedural).add(source.resolution).add(source.seed).key();
     const fs::path path = input_path(folder_, source.file, at + "/file");
-    return maker.add(path.extension().string()).add(key_of(file_content(path))).key();
+    maker.add(path.extension().string()).add(key_of(file_content(path)));
+    if (source.tile) {
+      maker.add("tile").add(source.tile->border);
+      for (const bool along : source.tile->axis) maker.add(along);
+    }
+    return maker.key();
   }
 
   /// Strokes inside the solids that mark an innermost place: they should run through vertices.
@@ -356,7 +361,10 @@ private:
   }
 
   Exemplar exemplar_of(const ExemplarSource& source, const std::string& at) const {
-    if (!source.file.empty()) return read_exemplar(input_path(folder_, source.file, at + "/file"));
+    if (!source.file.empty()) {
+      const Exemplar exemplar = read_exemplar(input_path(folder_, source.file, at + "/file"));
+      return source.tile ? tiled(exemplar, *source.tile, at + "/tile") : exemplar;
+    }
     return procedural_exemplar(source.procedural, {.resolution = source.resolution, .seed = source.seed});
   }
 

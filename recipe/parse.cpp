@@ -129,10 +129,27 @@ std::vector<AxisStroke> orientation_from(const JsonNode& node) {
   return result;
 }
 
+TileOptions tile_from(const JsonNode& node) {
+  node.object({"along", "border"});
+  TileOptions result;
+  if (const auto along = node.find("along")) {
+    const std::string axes = along->text();
+    result.axis = {};
+    for (const char letter : axes) {
+      const std::size_t axis = std::string("RST").find(letter);
+      if (axis == std::string::npos || result.axis[axis])
+        along->fail("is \"" + axes + "\"", "name axes once each, as in \"RST\" or \"RT\"");
+      result.axis[axis] = true;
+    }
+  }
+  node.optional_number("border", result.border, {0, 0.5, true, "above 0, to 0.5", "give a part of the exemplar"});
+  return result;
+}
+
 } // namespace
 
 ExemplarSource exemplar_from(const JsonNode& node) {
-  node.object({"file", "procedural", "resolution", "seed"});
+  node.object({"file", "tile", "procedural", "resolution", "seed"});
   ExemplarSource result;
   if (node.has("file") == node.has("procedural"))
     node.fail(node.has("file") ? "has both \"file\" and \"procedural\"" : "has neither \"file\" nor \"procedural\"",
@@ -142,6 +159,9 @@ ExemplarSource exemplar_from(const JsonNode& node) {
     for (const char* key : {"resolution", "seed"})
       if (node.has(key))
         node.at(key).fail("is for procedural exemplars only", "remove it: the file has its own size");
+    if (const auto tile = node.find("tile")) result.tile = tile_from(*tile);
+  } else if (node.has("tile")) {
+    node.at("tile").fail("is for files only", "remove it: procedural exemplars repeat where their type asks for it");
   }
   if (const auto name = node.find("procedural")) {
     result.procedural = name->text();

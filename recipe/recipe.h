@@ -3,6 +3,7 @@
 // moves; it never holds a number that depends on the mesh (tets, facets, patches, pieces): places are rest points and
 // input triangles. docs/recipe.md describes the JSON that stands for it.
 #include "volume/cut/level_set.h"
+#include "volume/exemplar/tile.h"
 #include "volume/field/depth.h"
 #include "volume/field/frames.h"
 #include "volume/lap/lap.h"
@@ -27,10 +28,11 @@ struct SurfaceSource {
 
 /// Where a solid texture comes from: a file, or a generator by name. Exactly one of `file` and `procedural` is set.
 struct ExemplarSource {
-  std::string file;       ///< relative to the recipe's folder
-  std::string procedural; ///< a name of procedural_names()
-  int resolution = 128;   ///< of a procedural exemplar, texels along each axis
-  std::uint64_t seed = 1; ///< of a procedural exemplar
+  std::string file;                ///< relative to the recipe's folder
+  std::optional<TileOptions> tile; ///< of a file: makes it repeat
+  std::string procedural;          ///< a name of procedural_names()
+  int resolution = 128;            ///< of a procedural exemplar, texels along each axis
+  std::uint64_t seed = 1;          ///< of a procedural exemplar
 };
 
 /// A turn by an angle (radians) about an axis of any length above 0.

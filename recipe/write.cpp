@@ -65,7 +65,16 @@ json json_from(const DepthConstraint& constraint) {
 }
 
 json json_from(const ExemplarSource& source) {
-  if (!source.file.empty()) return {{"file", source.file}};
+  if (!source.file.empty()) {
+    json result = {{"file", source.file}};
+    if (source.tile) {
+      std::string along;
+      for (int axis = 0; axis < 3; ++axis)
+        if (source.tile->axis[axis]) along += "RST"[axis];
+      result["tile"] = {{"along", along}, {"border", source.tile->border}};
+    }
+    return result;
+  }
   return {{"procedural", source.procedural}, {"resolution", source.resolution}, {"seed", source.seed}};
 }
 

@@ -7,6 +7,8 @@
 #include "volume/io/image_io.h"
 #include "volume/io/npy.h"
 
+#include <fstream>
+
 namespace pith {
 namespace {
 
@@ -68,6 +70,51 @@ TEST(ExemplarFile, APictureBecomesTwoAxes) {
   ASSERT_EQ(exemplar.component_count(), 4);
   EXPECT_EQ(exemplar.at(1, 0)[3], std::lround(255 * 7 / 24.0));
   EXPECT_EQ(exemplar.at(2, 1)[0], std::lround(255 * srgb_from_linear(20 / 24.0f)));
+}
+
+/// A TIFF of grey 8-bit pages, uncompressed (TIFF 6.0, §2 and §4): pages of 3 × 2, then one of another size.
+std::string tiff_of_pages(int pages, bool preview) {
+  std::string bytes = "II*";
+  bytes.push_back(0);
+  const auto number = [&](std::uint32_t value, int size) {
+    for (int i = 0; i < size; ++i) bytes.push_back(static_cast<char>(value >> (8 * i)));
+  };
+  number(8, 4);
+  const int all = pages + preview;
+  for (int page = 0; page < all; ++page) {
+    const std::uint32_t width = page < pages ? 3 : 1, height = page < pages ? 2 : 1;
+    constexpr std::uint32_t entries = 9, directory = 2 + 12 * entries + 4;
+    const std::uint32_t data = static_cast<std::uint32_t>(bytes.size()) + directory, count = width * height;
+    number(entries, 2);
+    const std::pair<int, std::uint32_t> entry[] = {{256, width}, {257, height}, {258, 8},      {259, 1},    {262, 1},
+                                                   {273, data},  {277, 1},      {278, height}, {279, count}};
+    for (const auto& [tag, value] : entry) number(tag, 2), number(4, 2), number(1, 4), number(value, 4);
+    number(page + 1 < all ? data + count + count % 2 : 0, 4);
+    for (std::uint32_t i = 0; i < count; ++i) bytes.push_back(static_cast<char>(100 * page + 10 * i));
+    if (count % 2) bytes.push_back(0);
+  }
+  return bytes;
+}
+
+TEST(ExemplarFile, ATiffOfPagesBecomesAVolume) {
+  const Folder folder;
+  std::ofstream(folder / "scan.tif", std::ios::binary) << tiff_of_pages(2, false);
+  const Exemplar scan = read_exemplar(folder / "scan.tif");
+  EXPECT_EQ(scan.axes, 3);
+  EXPECT_EQ(scan.size, (std::array<int, 4>{3, 2, 2, 1}));
+  EXPECT_EQ(scan.channel, std::vector<Channel>{{}});
+  for (int z = 0; z < 2; ++z)
+    for (int y = 0; y < 2; ++y)
+      for (int x = 0; x < 3; ++x)
+        for (int c = 0; c < 3; ++c) EXPECT_EQ(scan.at(x, y, z)[c], 100 * z + 10 * (3 * y + x));
+  // A small preview behind a picture does not make a volume of it.
+  std::ofstream(folder / "leaf.tif", std::ios::binary) << tiff_of_pages(1, true);
+  EXPECT_EQ(read_exemplar(folder / "leaf.tif").axes, 2);
+  EXPECT_EQ(read_image(folder / "scan.tif").width, 3);
+  EXPECT_EQ(read_pages(folder / "scan.tif").size(), 2u);
+  // Cut off within the second page.
+  std::ofstream(folder / "short.tif", std::ios::binary) << tiff_of_pages(2, false).substr(0, 140);
+  EXPECT_NO_THROW(read_image(folder / "short.tif"));
 }
 
 TEST(ExemplarFile, WhatCannotBeUsedIsRefused) {

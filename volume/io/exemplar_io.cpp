@@ -66,20 +66,22 @@ Exemplar read_bare(const std::filesystem::path& path) {
 }
 
 Exemplar read_picture(const std::filesystem::path& path) {
-  const Image image = read_image(path);
+  const std::vector<Image> pages = read_pages(path);
+  const Image& first = pages.front();
   Exemplar exemplar;
-  exemplar.axes = 2;
-  exemplar.size = {image.width, image.height, 1, 1};
+  exemplar.axes = pages.size() > 1 ? 3 : 2;
+  exemplar.size = {first.width, first.height, static_cast<int>(pages.size()), 1};
   exemplar.channel = {Channel{}};
-  const bool alpha = image.channels == 2 || image.channels == 4, grey = image.channels < 3;
+  const bool alpha = first.channels == 2 || first.channels == 4, grey = first.channels < 3;
   if (alpha) exemplar.channel = channels_for(4);
   exemplar.texel.reserve(exemplar.texel_count() * static_cast<std::size_t>(exemplar.component_count()));
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      const float* pixel = image.at(x, y);
-      for (int c = 0; c < 3; ++c) exemplar.texel.push_back(encoded(exemplar.channel[0], pixel[grey ? 0 : c]));
-      if (alpha) exemplar.texel.push_back(encoded(exemplar.channel[1], pixel[image.channels - 1]));
-    }
+  for (const Image& image : pages)
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        const float* pixel = image.at(x, y);
+        for (int c = 0; c < 3; ++c) exemplar.texel.push_back(encoded(exemplar.channel[0], pixel[grey ? 0 : c]));
+        if (alpha) exemplar.texel.push_back(encoded(exemplar.channel[1], pixel[image.channels - 1]));
+      }
   return exemplar;
 }
 

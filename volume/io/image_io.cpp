@@ -74,13 +74,8 @@ void check(const std::string& where, const Image& image) {
                        "give one with 1 to 4 channels");
 }
 
-} // namespace
-
-bool is_image_path(const std::filesystem::path& path) { return !format_of(path).empty(); }
-
-Image read_image(const std::filesystem::path& path) { return read_image(path, {}); }
-
-Image read_image(const std::filesystem::path& path, const ReadImageOptions& options) {
+/// The pages of a file: `all`, or the first alone.
+std::vector<Image> pages_of(const std::filesystem::path& path, const ReadImageOptions& options, bool all) {
   const std::string where = path.string();
   std::error_code error;
   if (!std::filesystem::exists(path, error)) throw IoFailure(where, "there is no such file; check its name");
@@ -89,11 +84,12 @@ Image read_image(const std::filesystem::path& path, const ReadImageOptions& opti
     throw InvalidInput(where, "is empty", "give a PNG, JPEG, EXR, HDR or TIFF image");
 
   const auto read =
-      reinterpret_cast<image_module::ReadFunction*>(module_function(module_file, "pith_read_image_2", purpose));
+      reinterpret_cast<image_module::ReadFunction*>(module_function(module_file, "pith_read_image_3", purpose));
   const auto release =
-      reinterpret_cast<image_module::ReleaseFunction*>(module_function(module_file, "pith_release_image_2", purpose));
+      reinterpret_cast<image_module::ReleaseFunction*>(module_function(module_file, "pith_release_image_3", purpose));
   image_module::Read request{};
   request.path = where.c_str();
+  request.all = all;
   const auto result = read(&request);
   const std::unique_ptr<float, image_module::ReleaseFunction*> pixel(request.pixel, release);
   if (result == image_module::not_opened) throw IoFailure(where, std::string(request.message) + "; free memory");
@@ -101,16 +97,34 @@ Image read_image(const std::filesystem::path& path, const ReadImageOptions& opti
     throw InvalidInput(where, std::string("is not a picture that can be read (") + request.message + ")",
                        "give a PNG, JPEG, EXR, HDR or TIFF image");
 
-  Image image(request.width, request.height, request.channels);
+  std::vector<Image> pages;
   const bool decode = request.integer && !options.linear;
-  const int alpha = has_alpha(image.channels) ? image.channels - 1 : -1;
-  parallel_for(std::size_t(image.width) * image.height, block, [&](std::size_t i) {
-    for (int c = 0; c < image.channels; ++c) {
-      const std::size_t at = i * image.channels + c;
-      image.pixel[at] = decode && c != alpha ? linear_from_srgb(pixel.get()[at]) : pixel.get()[at];
-    }
-  });
-  return image;
+  for (int page = 0; page < request.pages; ++page) {
+    Image& image = pages.emplace_back(request.width, request.height, request.channels);
+    const int alpha = has_alpha(image.channels) ? image.channels - 1 : -1;
+    const float* from = pixel.get() + image.pixel.size() * page;
+    parallel_for(std::size_t(image.width) * image.height, block, [&](std::size_t i) {
+      for (int c = 0; c < image.channels; ++c) {
+        const std::size_t at = i * image.channels + c;
+        image.pixel[at] = decode && c != alpha ? linear_from_srgb(from[at]) : from[at];
+      }
+    });
+  }
+  return pages;
+}
+
+} // namespace
+
+bool is_image_path(const std::filesystem::path& path) { return !format_of(path).empty(); }
+
+Image read_image(const std::filesystem::path& path) { return read_image(path, {}); }
+
+Image read_image(const std::filesystem::path& path, const ReadImageOptions& options) {
+  return std::move(pages_of(path, options, false).front());
+}
+
+std::vector<Image> read_pages(const std::filesystem::path& path, const ReadImageOptions& options) {
+  return pages_of(path, options, true);
 }
 
 void write_image(const std::filesystem::path& path, const Image& image, const WriteImageOptions& options,
@@ -188,9 +202,9 @@ void write_image(const std::filesystem::path& path, const Image& image, const Wr
 
   AtomicFile file(path); // first, so that a path that cannot be written is found before the work
   const auto encode =
-      reinterpret_cast<image_module::EncodeFunction*>(module_function(module_file, "pith_encode_image_2", purpose));
+      reinterpret_cast<image_module::EncodeFunction*>(module_function(module_file, "pith_encode_image_3", purpose));
   const auto release =
-      reinterpret_cast<image_module::ReleaseFunction*>(module_function(module_file, "pith_release_image_2", purpose));
+      reinterpret_cast<image_module::ReleaseFunction*>(module_function(module_file, "pith_release_image_3", purpose));
   const auto result = encode(&request);
   const std::unique_ptr<unsigned char, image_module::ReleaseFunction*> content(request.bytes, release);
   if (result != image_module::done)

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace pith {
 
@@ -19,6 +20,10 @@ struct ReadImageOptions {
   bool linear = false; ///< take integers as they are (byte / 255), no sRGB decoding: masks, heights, normals
 };
 Image read_image(const std::filesystem::path& path, const ReadImageOptions& options);
+
+/// All pages of a TIFF, as far as they are as large as the first (a volume, slice by slice: so scanners write them; a
+/// small preview behind a picture is no page of it); of other formats the one picture. Errors as read_image.
+std::vector<Image> read_pages(const std::filesystem::path& path, const ReadImageOptions& options = {});
 
 /// Further channels of an EXR, named LAYER.R, LAYER.G, LAYER.B or, for a single channel, LAYER.
 struct ImageLayer {

@@ -71,7 +71,7 @@ Result read(Read& image) {
     set_message(image.message, OIIO::geterror());
     return not_an_image;
   }
-  const OIIO::ImageSpec& spec = input->spec();
+  const OIIO::ImageSpec spec = input->spec();
   if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.depth > 1 ||
       spec.image_pixels() * 4 > most_numbers) {
     set_message(image.message, "holds no picture of a usable size");
@@ -83,18 +83,31 @@ Result read(Read& image) {
                        ? (spec.alpha_channel == 3 ? 4 : 3)
                        : spec.nchannels;
   image.integer = spec.format.is_floating_point() ? 0 : 1;
-  const std::size_t numbers = std::size_t(spec.width) * spec.height * image.channels;
+  image.pages = 1;
+  if (image.all && std::strcmp(input->format_name(), "tiff") == 0)
+    for (; input->seek_subimage(image.pages, 0); ++image.pages) {
+      const OIIO::ImageSpec& page = input->spec();
+      if (page.width != spec.width || page.height != spec.height || page.nchannels != spec.nchannels) break;
+    }
+  const std::size_t numbers_per_page = std::size_t(spec.width) * spec.height * image.channels;
+  const std::size_t numbers = numbers_per_page * image.pages;
+  if (numbers > most_numbers) {
+    set_message(image.message, "has more pages than can be read at once");
+    return not_an_image;
+  }
   image.pixel = static_cast<float*>(std::calloc(numbers, sizeof(float)));
   if (!image.pixel) {
     set_message(image.message, "does not fit into memory");
     return not_opened;
   }
-  if (!input->read_image(0, 0, 0, image.channels, OIIO::TypeDesc::FLOAT, image.pixel)) {
-    set_message(image.message, input->geterror());
-    std::free(image.pixel);
-    image.pixel = nullptr;
-    return not_an_image;
-  }
+  for (int page = 0; page < image.pages; ++page)
+    if (!input->read_image(page, 0, 0, image.channels, OIIO::TypeDesc::FLOAT,
+                           image.pixel + page * numbers_per_page)) {
+      set_message(image.message, input->geterror());
+      std::free(image.pixel);
+      image.pixel = nullptr;
+      return not_an_image;
+    }
   return done;
 }
 
@@ -153,7 +166,7 @@ Result encode(Encode& image) {
 
 #define PITH_EXPORT extern "C" __attribute__((visibility("default")))
 
-PITH_EXPORT Result pith_read_image_2(Read* image) {
+PITH_EXPORT Result pith_read_image_3(Read* image) {
   try {
     return read(*image);
   } catch (const std::exception& problem) {
@@ -162,7 +175,7 @@ PITH_EXPORT Result pith_read_image_2(Read* image) {
   }
 }
 
-PITH_EXPORT Result pith_encode_image_2(Encode* image) {
+PITH_EXPORT Result pith_encode_image_3(Encode* image) {
   try {
     return encode(*image);
   } catch (const std::exception& problem) {
@@ -171,4 +184,4 @@ PITH_EXPORT Result pith_encode_image_2(Encode* image) {
   }
 }
 
-PITH_EXPORT void pith_release_image_2(void* memory) { std::free(memory); }
+PITH_EXPORT void pith_release_image_3(void* memory) { std::free(memory); }

@@ -9,7 +9,8 @@ enum Result { done = 0, not_opened = 1, not_an_image = 2 };
 
 struct Read {
   const char* path;
-  int width, height, channels; ///< filled
+  int all; ///< 1: of a TIFF, all pages that are as large as the first; `pixel` holds one after the other
+  int width, height, channels, pages; ///< filled
   int integer;  ///< filled: 1 where the file holds integers, which `pixel` gives as fractions of the largest
   float* pixel; ///< filled; freed with `release`
   char message[512];
