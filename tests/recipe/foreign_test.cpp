@@ -4,6 +4,7 @@
 #include "tests/support/scratch.h"
 #include "tests/support/shared_data.h"
 #include "tests/support/tri_shapes.h"
+#include "volume/base/error.h"
 #include "volume/base/random.h"
 #include "volume/io/exemplar_io.h"
 #include "volume/io/mesh_io.h"
@@ -82,6 +83,29 @@ protected:
   }
   ScratchFolder folder;
 };
+
+TEST_F(Foreign, TilingIsPartOfTheRecipeAndOfItsStages) {
+  write_tri_mesh(folder / "ball.obj", testing::sphere_surface(2, radius));
+  std::vector<double> ramp;
+  for (int i = 0; i < 16 * 16 * 16; ++i) ramp.push_back(i % 16 / 16.0);
+  write_grey("ramp.exemplar", 16, ramp);
+  Recipe recipe =
+      parse_recipe(R"({"pith": 1, "surface": {"file": "ball.obj"}, "tetrahedralize": {"interior_edge": 10},
+    "solids": [{"type": "0", "scale": 25, "exemplar": {"file": "ramp.exemplar", "tile": {"border": 0.25}}}]})",
+                   "ball.json");
+  const std::string text = recipe_text(recipe);
+  const Recipe again = parse_recipe(text, "ball.json");
+  ASSERT_TRUE(again.solids[0].exemplar.tile);
+  EXPECT_EQ(again.solids[0].exemplar.tile->border, 0.25);
+  EXPECT_EQ(again.solids[0].exemplar.tile->axis, (std::array<bool, 3>{true, true, true}));
+  EXPECT_EQ(recipe_text(again), text);
+  Builder builder;
+  EXPECT_EQ(builder.build(recipe, folder.path()).model.layer[0].exemplar[0].size[0], 12);
+  recipe.solids[0].exemplar.tile->border = 0.5;
+  EXPECT_EQ(builder.build(recipe, folder.path()).model.layer[0].exemplar[0].size[0], 8);
+  recipe.solids[0].exemplar.tile.reset();
+  EXPECT_THROW(builder.build(recipe, folder.path()), InvalidInput) << "it does not repeat by itself";
+}
 
 TEST_F(Foreign, ACementScanFillsABall) {
   PITH_REQUIRE_SHARED(scan, "volumes/cement_128.tif");
