@@ -150,6 +150,29 @@ TEST(Windows, LeaveOutPixelsWhereTheFrameHasTurned) {
   EXPECT_LT(sets.pixels_left, sets.pixels);
 }
 
+TEST(Windows, LeaveOutPixelsThatLayersAboveCover) {
+  for (const float veil : {1.0f, 0.1f}) {
+    Model model = exact_model(noise_exemplar(false), 2);
+    Layer above = solid_layer(model, side, 1);
+    above.exemplar = {constant("seed", 3, {255, 0, 0})};
+    for (const TetId t : all_ids<TetId>(model.mesh.tet_count()))
+      for (const std::uint32_t row : above.lookup[t.value].corner)
+        above.corner[std::size_t(row) * 4 + 3] = barycenter(model.mesh, t).x() > side / 2 ? veil : 0.0f;
+    model.layer.push_back(std::move(above));
+    const Root root(std::move(model));
+    const WindowSets sets = windows_of(root, root.model().layer[0], SliceClass::across_t, {.windows = 40});
+    std::size_t free = 0;
+    for (const Slice& s : sets.model)
+      for (std::size_t p = 0; p < s.inside.size(); ++p) {
+        if (!s.inside[p]) continue;
+        ++free;
+        ASSERT_LT(barycenter(root.model().mesh, s.source[p].tet).x(), side / 2) << veil;
+      }
+    EXPECT_GT(free, sets.pixels / 4) << veil;
+    EXPECT_EQ(free, sets.pixels_left);
+  }
+}
+
 TEST(SliceMetric, OfTheExemplarItselfIsAboutOneAndGrowsWithBlur) {
   for (const bool depth : {false, true}) {
     const Exemplar sharp = noise_exemplar(depth);

@@ -105,7 +105,7 @@ Exemplar kiwi_seed_exemplar(const ProceduralOptions& options) {
 
 Exemplar watermelon_seed_exemplar(const ProceduralOptions& options) {
   const SeedShape shape{
-      .half_length = 0.40f, .broad = 0.25f, .thin = 0.118f, .taper = 0.48f, .veil = 0.06f, .veil_alpha = 0.5f};
+      .half_length = 0.37f, .broad = 0.235f, .thin = 0.11f, .taper = 0.48f, .veil = 0.045f, .veil_alpha = 0.5f};
   const Color dark = measured(22, 13, 11), brown = measured(58, 34, 23), rim = measured(92, 60, 38),
               kernel = measured(74, 52, 38), veil = measured(178, 26, 34);
   const PeriodicNoise grain(hash_of(options.seed, 0x3e1), 18, 26, 18), cloud(hash_of(options.seed, 0x3e2), 4, 5, 4);

@@ -73,7 +73,10 @@ PixelSource source_at(const Root& root, const Location& location, std::int32_t r
     if (layer.domain != Domain::solid || (layer.region >= 0 && layer.region != region)) continue;
     look_at(reader, location.tet, location.barycentric, sighting);
     const SeenLookup* top = sighting.dominant();
-    if (!top || sighting.coverage < 0.5f) continue;
+    if (!top || sighting.coverage < 0.5f) {
+      source.over += (1 - source.over) * sighting.coverage;
+      continue;
+    }
     source.layer = static_cast<std::uint32_t>(l);
     source.patch = top->lookup->patch;
     source.share = top->share / sighting.coverage;

@@ -30,9 +30,10 @@ SliceGrid framed_grid(const Box& box, const Vec3d& normal, double offset, double
 /// Which patch a pixel shows.
 struct PixelSource {
   static constexpr std::uint32_t none = 0xffffffffu;
-  std::uint32_t layer = none;        ///< the uppermost solid layer that shows there
+  std::uint32_t layer = none;        ///< the uppermost solid layer that covers at least half there
   std::uint32_t patch = none;        ///< its patch with the largest share
   float share = 0;                   ///< of that patch: 1 where nothing else mixes in
+  float over = 0;                    ///< coverage of the layers above that one, where they show a little
   std::array<float, 3> coordinate{}; ///< where in the exemplar it reads, not yet wrapped
   TetId tet;                         ///< the pixel's owner; none outside
 };

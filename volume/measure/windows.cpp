@@ -158,6 +158,7 @@ WindowSets windows_of(const Root& root, const Layer& layer, SliceClass slice_cla
   const std::size_t count = window.size();
   sets.exemplar.resize(count);
   if (sets.split_axis >= 0) sets.first_half.resize(count), sets.second_half.resize(count);
+  const auto own = static_cast<std::uint32_t>(&layer - model.layer.data());
   std::vector<std::size_t> left(count);
   parallel_for(count, 4, [&](std::size_t i) {
     const int depth_axis = sets.depth_varying ? 1 : -1;
@@ -171,6 +172,8 @@ WindowSets windows_of(const Root& root, const Layer& layer, SliceClass slice_cla
         std::isfinite(options.turn_tolerance) && !model.field.axes.empty() && !model.field.scale.empty();
     for (std::size_t p = 0; p < shown.inside.size(); ++p) {
       bool keep = shown.inside[p] && sets.exemplar[i].inside[p];
+      const PixelSource& source = shown.source[p];
+      keep &= (source.layer == own && source.over <= 1 / 255.0f) || source.layer == PixelSource::none;
       if (keep && sets.depth_varying)
         keep = std::abs(shown.depth[p] - sets.exemplar[i].depth[p]) <= options.depth_tolerance;
       if (keep && turns) {

@@ -48,8 +48,9 @@ struct WindowSets {
 /// True when the layer's second coordinate is the model's depth: at nine of ten look-ups the two agree within 10⁻³.
 bool varies_with_depth(const Model& model, const Layer& layer);
 
-/// Precondition: the layer is solid, of the model, and 3 wide. Where the model has no frames, those of the look-ups
-/// stand in. Empty where `takes` leaves nothing. In parallel; a function of the options alone.
+/// Pixels are also left out where layers above show: seeds on a flesh are not in its exemplar. Precondition: the
+/// layer is solid, of the model (one of root.model().layer), and 3 wide. Where the model has no frames, those of the
+/// look-ups stand in. Empty where `takes` leaves nothing. In parallel; a function of the options alone.
 WindowSets windows_of(const Root& root, const Layer& layer, SliceClass slice_class, const WindowOptions& options,
                       const Progress& progress = {});
 
