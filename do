@@ -191,7 +191,7 @@ gallery() {
 }
 
 # The models whose fills are measured: recipes of data/recipes.
-quality_models=({table1/,}{kiwi,carrot,tree,tube,strata,watermelon,cake})
+quality_models=({table1/,}{kiwi,carrot,tree,tube,strata,watermelon,cake} brick orange)
 
 # What `pith info --quality` says, on standard input, as a row of docs/quality.md. Of several layers the worst counts;
 # bold: the target is not met; –: there is nothing of the kind.

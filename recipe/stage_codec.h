@@ -127,6 +127,7 @@ void transfer(Archive& archive, Item& layer) {
   transfer(archive, layer.blend.grace);
   transfer(archive, layer.blend.mix);
   transfer(archive, layer.blend.mean_over);
+  transfer(archive, layer.blend.correlation);
   transfer_list(archive, layer.exemplar);
   transfer_list(archive, layer.mask);
   transfer_list(archive, layer.patch);

@@ -87,7 +87,7 @@ KeyMaker& add(KeyMaker& maker, const LapOptions& options) {
       .add(options.sample_spacing)
       .add(options.mask_variants)
       .add(options.align)
-      .add(options.preserves_variance())
+      .add(options.preserve_variance)
       .add(options.structured)
       .add(options.max_attempts);
   return add(maker, options.splotch);

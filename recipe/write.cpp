@@ -208,7 +208,7 @@ json json_from(const Solid& solid) {
   put(fill, "mask_variants", solid.fill.mask_variants, usual.mask_variants);
   put(fill, "align", solid.fill.align, usual.align);
   put(fill, "structured", solid.fill.structured, usual.structured);
-  if (solid.fill.preserve_variance) fill["preserve_variance"] = *solid.fill.preserve_variance;
+  put(fill, "preserve_variance", solid.fill.preserve_variance, usual.preserve_variance);
   put(fill, "max_attempts", solid.fill.max_attempts, usual.max_attempts);
   put_object(result, "fill", std::move(fill));
   result["seed"] = solid.fill.seed;

@@ -103,7 +103,7 @@ inline Model ramp_model(bool skin, int cells = 6) {
   blue.name = "blue";
   blue.domain = Domain::skin;
   blue.width = 2;
-  blue.blend = {.select = Blend::Select::max, .grace = 0.3f, .mix = Blend::Mix::linear, .mean_over = {true, false}};
+  blue.blend = {.select = Blend::Select::max, .grace = 0.3f, .mix = Blend::Mix::linear, .mean_over = {true, false}, .correlation = 0.25f};
   Exemplar image;
   image.name = "blue";
   image.axes = 2;

@@ -60,6 +60,7 @@ void expect_same(const Layer& a, const Layer& b) {
   EXPECT_EQ(a.blend.grace, b.blend.grace);
   EXPECT_EQ(a.blend.mix, b.blend.mix);
   EXPECT_EQ(a.blend.mean_over, b.blend.mean_over);
+  EXPECT_EQ(a.blend.correlation, b.blend.correlation);
   EXPECT_EQ(a.evaluation.scale, b.evaluation.scale);
   EXPECT_EQ(a.evaluation.offset, b.evaluation.offset);
   ASSERT_EQ(a.exemplar.size(), b.exemplar.size());

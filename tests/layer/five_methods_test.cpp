@@ -255,6 +255,9 @@ TEST(FiveMethods, MixingAboutAMeanThatVariesKeepsMeanAndVariance) {
     const Row weighted = measured(linear, 1 - share, share);
     EXPECT_NEAR(weighted.squares, kept.squares, 1e-6);
   }
+  Blend alike = preserving;
+  alike.correlation = 1; // then nothing is lost, and nothing to be made good
+  EXPECT_NEAR(measured(alike, 1, 0.4f).squares, measured(plain, 1, 0.4f).squares, 1e-6);
   const Row alone = measured(preserving, 1, 0);
   EXPECT_EQ(alone.squares, below.squares) << "nothing is mixed";
 }

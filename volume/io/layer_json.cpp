@@ -188,7 +188,8 @@ json json_of(const Layer& layer) {
            {{"select", name_in(select_names, layer.blend.select)},
             {"grace", layer.blend.grace},
             {"mix", name_in(mix_names, layer.blend.mix)},
-            {"mean_over", layer.blend.mean_over}}},
+            {"mean_over", layer.blend.mean_over},
+            {"correlation", layer.blend.correlation}}},
           {"evaluation", json_of(layer.evaluation)},
           {"sparse", !layer.simplex.empty()},
           {"patches", layer.patch.size()},
@@ -212,6 +213,7 @@ Layer layer_of(const json& value, const std::string& where) {
       if (!over[i].is_boolean()) refuse_json(where, "has a mean_over that is not made of true and false");
       layer.blend.mean_over[i] = over[i].get<bool>();
     }
+    layer.blend.correlation = static_cast<float>(number(blend, "correlation", where));
   }
   layer.evaluation = axis_map_of(member(value, "evaluation", where), where);
   return layer;

@@ -11,6 +11,7 @@
 #include "volume/base/random.h"
 #include "volume/lap/affine_layer.h"
 #include "volume/lap/align.h"
+#include "volume/lap/mixing.h"
 #include "volume/lap/pastes.h"
 #include "volume/lap/pivots.h"
 #include "volume/lap/seam_cut.h"
@@ -349,12 +350,15 @@ LapResult lap(const LapInput& input, const Exemplar& exemplar, const LapOptions&
   }
   Filler filler(input, exemplar, options);
   LapResult result = named(filler.run(progress));
-  if (options.preserves_variance())
-    for (int a = 0; a < 3; ++a) result.layer.blend.mean_over[a] = !traits.imposed[a];
   if (options.structured) {
     cut_seams(filler.simplices(), filler.coverage(), result.layer);
     result.statistics.lookups = result.layer.lookup.size();
     result.statistics.pastes = result.layer.patch.size();
+  }
+  if (options.preserve_variance) {
+    Blend& blend = result.layer.blend;
+    for (int a = 0; a < 3; ++a) blend.mean_over[a] = !traits.imposed[a];
+    blend.correlation = correlation_where_mixed(filler.simplices(), result.layer);
   }
   return result;
 }

@@ -8,7 +8,6 @@
 #include "volume/mesh/boundary.h"
 #include "volume/mesh/tet_mesh.h"
 
-#include <optional>
 #include <span>
 #include <string>
 
@@ -45,9 +44,7 @@ struct LapOptions {
   /// has a mask of its own.
   bool structured = false;
   /// Where pieces mix, keep mean and variance (Blend::mean_over); false: as the paper, which loses contrast there.
-  /// Unset: true unless structured, as pieces that match are alike where they meet and would gain contrast.
-  std::optional<bool> preserve_variance{};
-  bool preserves_variance() const { return preserve_variance.value_or(!structured); }
+  bool preserve_variance = true;
   int max_attempts = 24; ///< pastes on one tet before the fill is given up; a third of them keep to all rules
 };
 

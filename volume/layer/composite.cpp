@@ -172,13 +172,14 @@ void preserve_variance(const LayerReader& reader, const Lookup& lookup, Lanes w,
   const TexelGrid& grid = patch.source->mean;
   std::array<float, max_components> mean;
   sample(grid, cell_at(grid, patch.scale * w + patch.offset), mean.data());
-  const float gain = result.coverage / std::sqrt(squares);
+  const float whole = result.coverage * result.coverage;
+  const float gain = result.coverage / std::sqrt(squares + reader.layer->blend.correlation * (whole - squares));
   for (int c = 0; c < reader.components; ++c) {
     if (!reader.preserved[c]) continue;
     const float least = grid.low[c / 4][c % 4], most = least + 65535 * grid.step[c / 4][c % 4];
     const float middle = result.coverage * mean[c];
-    result.value[c] = std::clamp(middle + gain * (result.value[c] - middle), result.coverage * least,
-                                 result.coverage * most);
+    result.value[c] =
+        std::clamp(middle + gain * (result.value[c] - middle), result.coverage * least, result.coverage * most);
   }
 }
 
@@ -201,14 +202,15 @@ LayerValue composite_over(const LayerReader& reader, std::span<const Lookup> loo
   LayerValue result;
   std::array<float, max_components> value;
   float squares = 0;
-  Candidate last;
+  const Lookup* last = nullptr; // of those read, and where
+  Lanes last_at{};
   const auto finished = [&]() -> const LayerValue& {
     if (result.coverage >= opaque) { // nothing shines through: what is seen stands for the whole
       for (int k = 0; k < components; ++k) result.value[k] /= result.coverage;
       squares /= result.coverage * result.coverage;
       result.coverage = 1;
     }
-    if (preserves && result.lookups_read > 1) preserve_variance(reader, *last.lookup, last.sight.w, squares, result);
+    if (preserves && result.lookups_read > 1) preserve_variance(reader, *last, last_at, squares, result);
     return result;
   };
   for (std::size_t next = lookups.size(); next > 0 && result.coverage < opaque;) {
@@ -242,7 +244,7 @@ LayerValue composite_over(const LayerReader& reader, std::span<const Lookup> loo
       const float shown = (1 - result.coverage) * std::min(c.sight.alpha, 1.0f);
       for (int k = 0; k < components; ++k) result.value[k] += shown * value[k];
       result.coverage += shown;
-      if (preserves) squares += shown * shown, last = c;
+      if (preserves) squares += shown * shown, last = c.lookup, last_at = c.sight.w;
       if (result.coverage >= opaque) return finished();
     }
   }
@@ -354,7 +356,8 @@ LayerValue composite_weights(const LayerReader& reader, std::span<const Lookup> 
   if (blend.preserves_variance() && kept.count > 1) {
     float squares = 0;
     for (int i = 0; i < kept.count; ++i) squares += kept.weight[i] * kept.weight[i];
-    preserve_variance(reader, *kept.lookup[0], kept.sight[0].w, squares * (coverage / sum) * (coverage / sum), result);
+    preserve_variance(reader, *kept.lookup[0], kept.sight[0].w, squares * (coverage / sum) * (coverage / sum),
+                      result);
   }
   return result;
 }

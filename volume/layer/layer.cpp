@@ -25,6 +25,8 @@ void validate(const Layer& layer, std::size_t simplex_count) {
     if (layer.blend.mix == Blend::Mix::histogram && e.gaussian.empty())
       refuse("blends by histogram but exemplar '" + e.name + "' has no Gaussian twin", "call make_gaussian_twin");
   }
+  if (!(layer.blend.correlation >= 0 && layer.blend.correlation <= 1))
+    refuse("mixes with a correlation of " + std::to_string(layer.blend.correlation), "give 0 to 1");
   if (layer.blend.preserves_variance() && layer.blend.mix == Blend::Mix::histogram)
     refuse("preserves variance twice: by histogram and by mean_over", "clear mean_over, or mix otherwise");
   if (layer.blend.select != Blend::Select::none) {

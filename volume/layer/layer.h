@@ -34,9 +34,12 @@ struct Blend {
   /// Axes along which the exemplars look alike everywhere. Where any is set, mixing preserves mean and variance: with
   /// the shares w of the look-ups that are seen (their sum the coverage C) and the exemplar's mean m over these axes,
   /// C·m + C / √Σw² · Σ w·(c − m) instead of Σ w·c, which lies between the look-ups' colours and so has less contrast
-  /// than either (after Heitz, Neyret 2018, eq. 2, about a mean that varies along the other axes). One look-up alone is
-  /// shown as it is. Not for Mix::histogram, which preserves them by itself.
+  /// than either (after Heitz, Neyret 2018, eq. 2, about a mean that varies along the other axes). One look-up alone
+  /// is shown as it is. Not for Mix::histogram, which preserves them by itself.
   std::array<bool, 4> mean_over{};
+  /// How alike look-ups are where they mix, 0 … 1: Σw² above becomes Σw² + correlation · (C² − Σw²), since what is
+  /// alike loses no contrast.
+  float correlation = 0;
 
   bool preserves_variance() const { return mean_over[0] || mean_over[1] || mean_over[2] || mean_over[3]; }
 };
