@@ -152,7 +152,10 @@ std::vector<Finding> depth_findings(const ModelFile& file) {
                      "of {:.3g} at ({:.6g}, {:.6g}, {:.6g}) that persists by {:.3g})",
                      solid.region, worst.maximum ? "maximum" : "minimum", worst.depth, worst.place.x(),
                      worst.place.y(), worst.place.z(), worst.persistence),
-         extrema.size(), "leave depth_options/extrema at \"remove\", or give places near them a depth"});
+         extrema.size(),
+         solid.depth_options.remove_extrema
+             ? "give places near them a depth"
+             : "leave depth_options/extrema at \"remove\", or give places near them a depth"});
   }
   return findings;
 }

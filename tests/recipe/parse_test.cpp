@@ -320,7 +320,7 @@ TEST(Recipe, FillsUpToCreasesAreReadAndWritten) {
     std::string t = text;
     const std::string key = "\"mask\":";
     return t.replace(t.find(key), key.size(),
-                     "\"depth_options\": {\"extrema\": \"remove\", \"persistence\": 0.05, \"max_centers\": 300}, " + key);
+                     "\"depth_options\": {\"extrema\": \"keep\", \"persistence\": 0.05, \"max_centers\": 300}, " + key);
   }();
   const Recipe recipe = parse_recipe(more, "kiwi.json");
   const Recipe again = parse_recipe(recipe_text(recipe), "kiwi.json");
@@ -333,7 +333,7 @@ TEST(Recipe, FillsUpToCreasesAreReadAndWritten) {
     EXPECT_FALSE(solid.depth[0].fill->triangle.exists());
     EXPECT_EQ(solid.depth[1].fill->triangle, TriangleId(12));
     EXPECT_EQ(solid.depth[1].fill->crease, FaceFill().crease);
-    EXPECT_TRUE(solid.depth_options.remove_extrema);
+    EXPECT_FALSE(solid.depth_options.remove_extrema);
     EXPECT_EQ(solid.depth_options.persistence, 0.05);
     EXPECT_EQ(solid.depth_options.max_centers, 300);
   }

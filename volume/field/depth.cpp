@@ -3,16 +3,14 @@
 //
 // Departures: the paper interpolates all constraints; here centres of small models are thinned, since the skin's
 // vertices crowd far closer than the smooth interpolant needs, and the vertices left out take their prescribed depths
-// afterwards. And extrema that no constraint asks for, a failure that the paper names (§6), are taken away unless
-// they are to be kept.
+// afterwards. And extrema that no constraint asks for are levelled, unless they are to be kept.
 #include "volume/field/depth.h"
 
 #include "volume/base/error.h"
 #include "volume/base/parallel.h"
-#include "volume/field/depth_extrema.h"
+#include "volume/field/depth_flood.h"
 #include "volume/field/depth_places.h"
 #include "volume/field/farthest_points.h"
-#include "volume/field/monotone_depth.h"
 #include "volume/field/radial_basis.h"
 
 #include <algorithm>
@@ -92,39 +90,34 @@ RadialBasis basis_of(const TetMesh& mesh, const DepthPlaces& places, std::size_t
   return RadialBasis::fit(centers.point, centers.value, {.accuracy = 3e-7});
 }
 
-/// The gradient of the linear function through differences at a tet's corners.
-Vec3d linear_gradient(const TetMesh& mesh, TetId t, const std::array<double, 4>& at_corner) {
+/// The gradient of the linear function through a tet's corners.
+Vec3d linear_gradient(const TetMesh& mesh, TetId t, const PerVertex<float>& value) {
   const auto& corner = mesh.corner[t];
-  Mat3d edges;
+  std::array<Vec3d, 3> edge;
   Vec3d rise;
   for (int k = 0; k < 3; ++k) {
-    edges.row(k) = (mesh.position[corner[k + 1]] - mesh.position[corner[0]]).transpose();
-    rise[k] = at_corner[k + 1] - at_corner[0];
+    edge[k] = mesh.position[corner[k + 1]] - mesh.position[corner[0]];
+    rise[k] = double(value[corner[k + 1]]) - value[corner[0]];
   }
-  const Vec3d a = edges.row(0), b = edges.row(1), c = edges.row(2);
+  const auto& [a, b, c] = edge;
   const double volume = a.dot(b.cross(c));
   if (volume == 0) return Vec3d::Zero();
   return (rise[0] * b.cross(c) + rise[1] * c.cross(a) + rise[2] * a.cross(b)) / volume;
 }
 
-/// Takes away what extrema_of finds.
-void remove_extrema(const TetMesh& mesh, std::int32_t region, const PerVertex<std::uint8_t>& held,
-                    const RadialBasis& basis, DepthField& field) {
-  const PerVertex<float> changed = monotone_depth(mesh, region, field.value, held);
-  PerVertex<std::uint8_t> moved(mesh.vertex_count(), 0);
-  for (std::size_t v = 0; v < moved.size(); ++v)
-    moved[VertexId(v)] = changed[VertexId(v)] != field.value[VertexId(v)];
+/// Takes levelled depths over. Where they hardly rise any more, their gradient has the slope with which they began.
+void take(const TetMesh& mesh, std::int32_t region, const LevelledDepth& levelled, DepthField& field) {
   parallel_for(mesh.tet_count(), 256, [&](std::size_t i) {
     const TetId t(i);
     const auto& corner = mesh.corner[t];
-    if (mesh.region[t] != region ||
-        std::none_of(corner.begin(), corner.end(), [&](VertexId v) { return moved[v] != 0; }))
-      return;
-    std::array<double, 4> change;
-    for (int k = 0; k < 4; ++k) change[k] = changed[corner[k]] - basis.value(mesh.position[corner[k]]);
-    field.gradient[t] += linear_gradient(mesh, t, change);
+    const auto moved = [&](VertexId v) { return levelled.depth[v] != field.value[v]; };
+    if (mesh.region[t] != region || std::none_of(corner.begin(), corner.end(), moved)) return;
+    const Vec3d gradient = linear_gradient(mesh, t, levelled.depth);
+    const double rise = gradient.norm();
+    field.gradient[t] = rise > 0 && rise < levelled.slope ? Vec3d(gradient * (levelled.slope / rise)) : gradient;
   });
-  field.value = changed;
+  for (std::size_t v = 0; v < field.value.size(); ++v)
+    field.value[VertexId(v)] = std::clamp(levelled.depth[VertexId(v)], 0.0f, 1.0f);
 }
 
 } // namespace
@@ -163,8 +156,11 @@ DepthField depth_field(const TetMesh& mesh, const Boundary& boundary, std::int32
     if (mesh.region[t] == region) field.gradient[t] = basis.gradient(barycenter(mesh, t));
   });
   const PerVertex<std::uint8_t> held = held_vertices(mesh, region, places);
-  field.extrema = extrema_of(mesh, region, field.value, held, options.persistence).size();
-  if (field.extrema > 0 && options.remove_extrema) remove_extrema(mesh, region, held, basis, field);
+  const DepthGraph graph = depth_graph(mesh, region);
+  for (const bool maxima : {false, true})
+    field.extrema += extrema_of(graph, field.value, held, maxima, options.persistence).size();
+  if (field.extrema > 0 && options.remove_extrema)
+    take(mesh, region, without_extrema(graph, field.value, held, options.persistence), field);
   return field;
 }
 

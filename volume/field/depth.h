@@ -34,21 +34,22 @@ struct DepthOptions {
   /// places; from there on all of them, at near linear cost (radial_basis.h).
   int max_centers = 0;
   double stroke_spacing = 0; ///< mm between samples of a stroke; 0: its length / 40
-  /// Takes away local extrema that no constraint asks for, as the paper's thin plate has them in concave solids: the
-  /// field takes the slopes of a harmonic one until it rises from every free vertex and falls (monotone_depth.h).
-  /// That is another field everywhere, steep at strokes: look at the result.
-  bool remove_extrema = false;
+  /// Levels local extrema that no constraint asks for (depth_extrema.h), as the paper's thin plate has them in
+  /// concave solids and beyond the last constraint: the basin of a minimum is raised to where it spills over, the top
+  /// of a maximum lowered to where it joins what is higher or held. Levelled places rise (fall) on by less than
+  /// `persistence`, away from there. The field keeps its bits everywhere else. False: the paper's field.
+  bool remove_extrema = true;
   /// Extrema that persist by less are let be.
   double persistence = 0.01;
 };
 
 struct DepthField {
   PerVertex<float> value; ///< exact where constrained, clamped to [0, 1]; 0 at vertices of other regions
-  /// 1/mm, in other regions 0: of the smooth interpolant at the tet's barycentre, and of the linear change on top
-  /// where extrema were taken away.
+  /// 1/mm, in other regions 0: of the smooth interpolant at the tet's barycentre; where extrema were levelled, of the
+  /// linear function through the corners, but at least 0.024 over the region's extent.
   PerTet<Vec3d> gradient;
   std::size_t centers = 0; ///< that the radial basis really has
-  std::size_t extrema = 0; ///< of the thin plate that no constraint asks for
+  std::size_t extrema = 0; ///< of the thin plate, that no constraint asks for
 };
 
 /// Thin-plate interpolation of the constraints in 3D. `where` names the recipe's field in messages.

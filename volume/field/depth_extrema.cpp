@@ -1,6 +1,6 @@
 // Extrema by the merging of superlevel sets: Edelsbrunner, Letscher, Zomorodian: Topological persistence and
 // simplification, 2002, in dimension 0.
-#include "volume/field/depth_extrema.h"
+#include "volume/field/depth_graph.h"
 
 #include "volume/base/error.h"
 #include "volume/field/depth_places.h"
@@ -10,15 +10,8 @@
 #include <numeric>
 
 namespace pith {
-namespace {
 
-/// The mesh's vertices of one region, its edges, and its constrained vertices.
-struct Graph {
-  std::vector<VertexId> vertex; ///< ascending
-  VertexNeighbors neighbors;    ///< of the region's tets alone, by the mesh's numbers
-};
-
-Graph graph_of(const TetMesh& mesh, std::int32_t region) {
+DepthGraph depth_graph(const TetMesh& mesh, std::int32_t region) {
   TetMesh part;
   part.position.resize(mesh.vertex_count());
   std::vector<std::uint8_t> used(mesh.vertex_count(), 0);
@@ -27,17 +20,17 @@ Graph graph_of(const TetMesh& mesh, std::int32_t region) {
       part.corner.push_back(mesh.corner[t]);
       for (const VertexId v : mesh.corner[t]) used[v] = 1;
     }
-  Graph graph{.vertex = {}, .neighbors = vertices_around_vertices(part)};
+  DepthGraph graph{.mesh = mesh, .vertex = {}, .neighbors = vertices_around_vertices(part)};
   for (std::size_t v = 0; v < used.size(); ++v)
     if (used[v]) graph.vertex.emplace_back(v);
   return graph;
 }
 
-/// Maxima of sign · depth.
-void add_extrema(const Graph& graph, const TetMesh& mesh, const PerVertex<float>& depth,
-                 const PerVertex<std::uint8_t>& constrained, float sign, double persistence,
-                 std::vector<DepthExtremum>& result) {
-  const auto height = [&](VertexId v) { return sign * depth[v]; };
+std::vector<DepthExtremum> extrema_of(const DepthGraph& graph, const PerVertex<float>& depth,
+                                      const PerVertex<std::uint8_t>& constrained, bool maxima, double persistence) {
+  const TetMesh& mesh = graph.mesh;
+  std::vector<DepthExtremum> result;
+  const auto height = [&](VertexId v) { return maxima ? depth[v] : -depth[v]; };
   std::vector<VertexId> order = graph.vertex;
   std::sort(order.begin(), order.end(), [&](VertexId a, VertexId b) {
     return height(a) != height(b) ? height(a) > height(b) : a.value < b.value;
@@ -51,12 +44,16 @@ void add_extrema(const Graph& graph, const TetMesh& mesh, const PerVertex<float>
     while (parent[v] != v) v = parent[v] = parent[parent[v]];
     return v;
   };
-  const auto end = [&](std::uint32_t component, double at) {
+  const auto end = [&](std::uint32_t component, double at, VertexId saddle) {
     const VertexId v = top[component];
     const double lasted = height(v) - at;
     if (lasted >= persistence && lasted > 0)
-      result.push_back(
-          {.vertex = v, .place = mesh.position[v], .maximum = sign > 0, .depth = depth[v], .persistence = lasted});
+      result.push_back({.vertex = v,
+                        .saddle = saddle,
+                        .place = mesh.position[v],
+                        .maximum = maxima,
+                        .depth = depth[v],
+                        .persistence = lasted});
   };
   for (const VertexId v : order) {
     parent[v] = v;
@@ -69,16 +66,15 @@ void add_extrema(const Graph& graph, const TetMesh& mesh, const PerVertex<float>
       // a goes on, b ends: what is held outlasts what is not, then the higher, then the lower number.
       const auto rank = [&](std::uint32_t c) { return std::tuple(!held[c], -height(top[c]), top[c].value); };
       if (rank(b) < rank(a)) std::swap(a, b);
-      if (!held[b]) end(b, height(v));
+      if (!held[b]) end(b, height(v), v);
       parent[b] = a;
       held[a] = held[a] || held[b];
     }
   }
   for (const VertexId v : graph.vertex)
-    if (parent[v] == v && !held[v]) end(v, height(order.back())); // a part that nothing constrains
+    if (parent[v] == v && !held[v]) end(v, height(order.back()), {}); // a part that nothing constrains
+  return result;
 }
-
-} // namespace
 
 std::vector<DepthExtremum> extrema_of(const TetMesh& mesh, std::int32_t region, const PerVertex<float>& depth,
                                       const PerVertex<std::uint8_t>& constrained, double persistence) {
@@ -87,10 +83,10 @@ std::vector<DepthExtremum> extrema_of(const TetMesh& mesh, std::int32_t region, 
                        std::to_string(depth.size()) + " depths and " + std::to_string(constrained.size()) +
                            " marks are given for " + std::to_string(mesh.vertex_count()) + " vertices",
                        "give one of each to every vertex");
-  std::vector<DepthExtremum> result;
-  const Graph graph = graph_of(mesh, region);
-  add_extrema(graph, mesh, depth, constrained, 1, persistence, result);
-  add_extrema(graph, mesh, depth, constrained, -1, persistence, result);
+  const DepthGraph graph = depth_graph(mesh, region);
+  std::vector<DepthExtremum> result = extrema_of(graph, depth, constrained, true, persistence);
+  const std::vector<DepthExtremum> minima = extrema_of(graph, depth, constrained, false, persistence);
+  result.insert(result.end(), minima.begin(), minima.end());
   std::sort(result.begin(), result.end(), [](const DepthExtremum& a, const DepthExtremum& b) {
     return a.persistence != b.persistence ? a.persistence > b.persistence : a.vertex.value < b.vertex.value;
   });

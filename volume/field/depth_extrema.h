@@ -1,12 +1,13 @@
 #pragma once
 // Places where depth turns around although nothing asks it to: local maxima and minima away from its constraints. The
-// thin plate overshoots in concave solids (Takayama 2008, §6), and a texture that follows such a depth shows bubbles.
+// thin plate overshoots in some concave solids, and a texture that follows such a depth shows bubbles.
 #include "volume/field/depth.h"
 
 namespace pith {
 
 struct DepthExtremum {
   VertexId vertex;
+  VertexId saddle; ///< where the persistence ends; none in a part of the region that no constraint holds
   Vec3d place = Vec3d::Zero();
   bool maximum = true;
   double depth = 0;
@@ -19,8 +20,8 @@ struct DepthExtremum {
 std::vector<DepthExtremum> extrema_of(const TetMesh& mesh, std::int32_t region, const PerVertex<float>& depth,
                                       const PerVertex<std::uint8_t>& constrained, double persistence = 0.01);
 
-/// The vertices of the region that constraints hold: on the triangles and strokes, and nearest to the strokes'
-/// samples. Errors: as depth_field's.
+/// The vertices of the region that constraints hold: on the triangles and strokes, and around the strokes' samples.
+/// Errors: as depth_field's.
 PerVertex<std::uint8_t> constrained_vertices(const TetMesh& mesh, const Boundary& boundary, std::int32_t region,
                                              const std::vector<DepthConstraint>& constraints,
                                              const std::string& where, const DepthOptions& options = {});

@@ -6,6 +6,7 @@
 #include "volume/field/face_fill.h"
 #include "volume/field/scale_hint.h"
 #include "volume/mesh/facet_tree.h"
+#include "volume/mesh/locate.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -17,6 +18,8 @@ namespace {
 
 /// Places closer than this fraction of the region's diagonal are one place.
 constexpr double same_place = 1e-6;
+/// A corner with less of a barycentric coordinate is no corner of the face, edge or vertex where a point lies.
+constexpr double least_part = 1e-6;
 /// A stroke may lie this fraction of the diagonal outside the region (drawn on a smoother surface than the mesh's).
 constexpr double stroke_margin = 0.01;
 
@@ -322,7 +325,30 @@ PerVertex<std::uint8_t> held_vertices(const TetMesh& mesh, std::int32_t region, 
       }
     }
   });
-  for (const std::uint32_t v : nearest) held[VertexId(v)] = 1;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> by_vertex; // nearest vertex, sample
+  for (std::size_t s = 0; s < nearest.size(); ++s) {
+    held[VertexId(nearest[s])] = 1;
+    by_vertex.emplace_back(nearest[s], static_cast<std::uint32_t>(s));
+  }
+  std::sort(by_vertex.begin(), by_vertex.end());
+  const auto sampled = [&](VertexId v) {
+    return std::equal_range(by_vertex.begin(), by_vertex.end(), std::pair(v.value, 0u),
+                            [](const auto& a, const auto& b) { return a.first < b.first; });
+  };
+  const PerVertex<std::uint8_t> around = held; // the loop below adds to `held`
+  for (const TetId t : all_ids<TetId>(mesh.tet_count())) {
+    if (mesh.region[t] != region) continue;
+    for (const VertexId v : mesh.corner[t]) {
+      if (!around[v]) continue;
+      const auto [first, last] = sampled(v);
+      for (auto entry = first; entry != last; ++entry) {
+        const std::array<double, 4> part = barycentric(mesh, t, places.sample[entry->second]);
+        if (*std::min_element(part.begin(), part.end()) < -least_part) continue;
+        for (int k = 0; k < 4; ++k)
+          if (part[k] > least_part) held[mesh.corner[t][k]] = 1;
+      }
+    }
+  }
   return held;
 }
 

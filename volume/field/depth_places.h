@@ -17,7 +17,9 @@ DepthPlaces depth_places(const TetMesh& mesh, const Boundary& boundary, std::int
                          const std::vector<DepthConstraint>& constraints, const std::string& where,
                          const DepthOptions& options);
 
-/// 1 at vertices with a prescribed depth and at the vertex of the region nearest to each sample.
+/// 1 at vertices with a prescribed depth, at the vertex of the region nearest to each sample, and at the other
+/// corners of the tet, face or edge there that contains the sample: what depth is asked for there lies between
+/// theirs.
 PerVertex<std::uint8_t> held_vertices(const TetMesh& mesh, std::int32_t region, const DepthPlaces& places);
 
 } // namespace pith

@@ -144,22 +144,30 @@ VertexTets tets_around_vertices(const TetMesh& mesh) {
 }
 
 VertexNeighbors vertices_around_vertices(const TetMesh& mesh) {
+  constexpr std::size_t block = 4096;
   const VertexTets around = tets_around_vertices(mesh);
+  const std::size_t count = mesh.vertex_count();
   VertexNeighbors rows;
-  rows.begin.reserve(mesh.vertex_count() + 1);
-  rows.begin.push_back(0);
-  rows.vertex.reserve(mesh.vertex_count() * 14);
-  std::vector<VertexId> found;
-  for (const VertexId v : all_ids<VertexId>(mesh.vertex_count())) {
-    found.clear();
-    for (const TetId t : around[v])
-      for (const VertexId other : mesh.corner[t])
-        if (other != v) found.push_back(other);
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
-    rows.vertex.insert(rows.vertex.end(), found.begin(), found.end());
-    rows.begin.push_back(static_cast<std::uint32_t>(rows.vertex.size()));
-  }
+  rows.begin.assign(count + 1, 0); // at first the length of the row before
+  std::vector<std::vector<VertexId>> part((count + block - 1) / block);
+  parallel_blocks(count, block, [&](std::size_t begin, std::size_t end) {
+    std::vector<VertexId> found;
+    std::vector<VertexId>& all = part[begin / block];
+    all.reserve((end - begin) * 14);
+    for (std::size_t v = begin; v < end; ++v) {
+      found.clear();
+      for (const TetId t : around[VertexId(v)])
+        for (const VertexId other : mesh.corner[t])
+          if (other != v) found.push_back(other);
+      std::sort(found.begin(), found.end());
+      found.erase(std::unique(found.begin(), found.end()), found.end());
+      all.insert(all.end(), found.begin(), found.end());
+      rows.begin[v + 1] = static_cast<std::uint32_t>(found.size());
+    }
+  });
+  for (std::size_t v = 0; v < count; ++v) rows.begin[v + 1] += rows.begin[v];
+  rows.vertex.reserve(rows.begin.back());
+  for (const std::vector<VertexId>& one : part) rows.vertex.insert(rows.vertex.end(), one.begin(), one.end());
   return rows;
 }
 
