@@ -168,11 +168,12 @@ void read_exemplar(const LayerReader& reader, const Lookup& lookup, const Sight&
 /// Blend::mean_over. `result` is a sum of shown values; `squares`: Σ of the squares of their shares; `lookup`: any of
 /// them, since along the axes over which the mean varies all that are seen at a point have the same coordinates.
 void preserve_variance(const LayerReader& reader, const Lookup& lookup, Lanes w, float squares, LayerValue& result) {
+  const float whole = result.coverage * result.coverage;
+  if (squares >= 0.99f * whole) return; // one look-up as good as alone: no 8-bit value would change by a step
   const LayerReader::PatchReader& patch = reader.patch[lookup.patch];
   const TexelGrid& grid = patch.source->mean;
   std::array<float, max_components> mean;
   sample(grid, cell_at(grid, patch.scale * w + patch.offset), mean.data());
-  const float whole = result.coverage * result.coverage;
   const float gain = result.coverage / std::sqrt(squares + reader.layer->blend.correlation * (whole - squares));
   for (int c = 0; c < reader.components; ++c) {
     if (!reader.preserved[c]) continue;
