@@ -1,8 +1,8 @@
 #include "recipe/build.h"
 
 #include "recipe/plain_layer.h"
-#include "recipe/stage_codec.h"
 #include "recipe/stage_keys.h"
+#include "recipe/stage_run.h"
 #include "recipe/steps.h"
 #include "recipe/surface_source.h"
 #include "volume/base/error.h"
@@ -14,7 +14,6 @@
 #include "volume/mesh/refine.h"
 
 #include <algorithm>
-#include <chrono>
 #include <set>
 
 namespace pith {
@@ -33,98 +32,6 @@ fs::path input_path(const fs::path& folder, const std::string& file, const std::
   return path;
 }
 
-/// One build: fetches results from the caches, computes what is missing, keeps the books.
-class Run {
-public:
-  Run(const BuildOptions& options, MemoryCache& memory, DiskCache& disk, const BuildProgress& progress)
-      : options_(options), memory_(memory), disk_(disk), progress_(progress) {}
-
-  KeyMaker key(const char* stage) const {
-    KeyMaker maker(options_.code);
-    maker.add(stage);
-    return maker;
-  }
-
-  /// Announces a stage; reports come in the order of these calls, whichever way the results are fetched.
-  void announce(const std::string& name, const Key& key) { reports_.push_back({name, key.text(), 0, true}); }
-
-  /// The result of a stage from memory, from disk, or computed.
-  template <class T, class Compute>
-  std::shared_ptr<const T> result(const std::string& name, const Key& key, bool on_disk, const Compute& compute) {
-    tell(name, 0);
-    const auto start = std::chrono::steady_clock::now();
-    bool cached = true;
-    std::shared_ptr<const T> value = memory_.load<T>(key);
-    if (!value && on_disk) value = from_disk<T>(key);
-    if (!value) {
-      cached = false;
-      const double inner_before = inner_seconds_;
-      value = std::make_shared<const T>(
-          compute([&](double fraction) { return !progress_ || progress_(name, fraction); }));
-      finish(name, start, inner_seconds_ - inner_before, cached);
-      remember(key, value, on_disk);
-    } else {
-      finish(name, start, 0, cached);
-    }
-    tell(name, 1);
-    return value;
-  }
-
-  std::vector<StageReport> reports() const { return reports_; }
-
-private:
-  void tell(const std::string& name, double fraction) {
-    if (progress_ && !progress_(name, fraction)) throw Cancelled();
-  }
-
-  void finish(const std::string& name, std::chrono::steady_clock::time_point start, double inner, bool cached) {
-    const double all = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    const auto report =
-        std::find_if(reports_.begin(), reports_.end(), [&](const StageReport& r) { return r.name == name; });
-    report->seconds = all - inner;
-    report->cached = cached;
-    inner_seconds_ += all - inner; // stages that were fetched while this one ran count for themselves
-  }
-
-  template <class T>
-  std::shared_ptr<const T> from_disk(const Key& key) {
-    const std::optional<std::string> bytes = disk_.load(key);
-    if (!bytes) return nullptr;
-    try {
-      auto value = std::make_shared<T>();
-      ArchiveReader reader(*bytes);
-      transfer(reader, *value);
-      if (reader.left() != 0) throw DamagedArchive();
-      std::shared_ptr<const T> result = std::move(value);
-      memory_.store(key, result, bytes->size());
-      return result;
-    } catch (const DamagedArchive&) {
-      disk_.remove(key);
-      return nullptr;
-    }
-  }
-
-  template <class T>
-  void remember(const Key& key, const std::shared_ptr<const T>& value, bool on_disk) {
-    ArchiveCounter counter;
-    transfer(counter, *value);
-    memory_.store(key, value, counter.bytes);
-    if (!on_disk || !disk_.on()) return;
-    std::string bytes;
-    bytes.reserve(counter.bytes);
-    ArchiveWriter writer(bytes);
-    transfer(writer, *value);
-    disk_.store(key, bytes);
-  }
-
-  const BuildOptions& options_;
-  MemoryCache& memory_;
-  DiskCache& disk_;
-  const BuildProgress& progress_;
-  std::vector<StageReport> reports_;
-  double inner_seconds_ = 0;
-};
-
 /// The keys of one solid's stages.
 struct SolidKeys {
   Key depth, along, around, frames, exemplar, fill; ///< of fields that the solid has not: zeros
@@ -133,7 +40,8 @@ struct SolidKeys {
 
 class RecipeBuild {
 public:
-  RecipeBuild(Run& run, const Recipe& recipe, const fs::path& folder) : run_(run), recipe_(recipe), folder_(folder) {}
+  RecipeBuild(StageRun& run, const Recipe& recipe, const fs::path& folder)
+      : run_(run), recipe_(recipe), folder_(folder) {}
 
   BuildResult result() {
     make_keys();
@@ -550,7 +458,7 @@ private:
     return *locator_;
   }
 
-  Run& run_;
+  StageRun& run_;
   const Recipe& recipe_;
   const fs::path& folder_;
   fs::path surface_path_;
@@ -571,30 +479,13 @@ private:
 
 } // namespace
 
-std::map<std::string, std::string> BuildResult::keys() const {
-  std::map<std::string, std::string> result;
-  for (const StageReport& stage : stages) result[stage.name] = stage.key;
-  return result;
-}
-
-void add_last_cut(std::map<std::string, std::string>& keys, const Recipe& recipe) {
-  std::erase_if(keys, [](const auto& entry) { return entry.first.starts_with("move "); });
-  const std::size_t last = recipe.cuts.size() - 1;
-  const std::string before = last == 0 ? "refine" : "cut " + std::to_string(last - 1);
-  const auto found = keys.find(before);
-  if (found == keys.end()) return; // a model that was not built from a recipe
-  KeyMaker cut(code_version());
-  cut.add("cut").add(key_from(found->second));
-  keys["cut " + std::to_string(last)] = add(cut, recipe.cuts[last]).key().text();
-}
-
 Builder::Builder(BuildOptions options)
     : options_(std::move(options)), memory_(options_.memory_bytes), disk_(options_.cache, options_.cache_bytes) {
   if (options_.code.empty()) options_.code = code_version();
 }
 
 BuildResult Builder::build(const Recipe& recipe, const fs::path& folder, const BuildProgress& progress) {
-  Run run(options_, memory_, disk_, progress);
+  StageRun run(options_, memory_, disk_, progress);
   return RecipeBuild(run, recipe, folder).result();
 }
 

@@ -1,5 +1,7 @@
 #include "recipe/stage_keys.h"
 
+#include "recipe/build.h"
+
 namespace pith {
 namespace {
 
@@ -167,6 +169,23 @@ KeyMaker& add(KeyMaker& maker, const MoveStep& step) {
   maker.add(step.piece).add(step.translate).add(step.axis).add(step.angle).add(step.about.has_value());
   if (step.about) maker.add(*step.about);
   return maker;
+}
+
+std::map<std::string, std::string> BuildResult::keys() const {
+  std::map<std::string, std::string> result;
+  for (const StageReport& stage : stages) result[stage.name] = stage.key;
+  return result;
+}
+
+void add_last_cut(std::map<std::string, std::string>& keys, const Recipe& recipe) {
+  std::erase_if(keys, [](const auto& entry) { return entry.first.starts_with("move "); });
+  const std::size_t last = recipe.cuts.size() - 1;
+  const std::string before = last == 0 ? "refine" : "cut " + std::to_string(last - 1);
+  const auto found = keys.find(before);
+  if (found == keys.end()) return; // a model that was not built from a recipe
+  KeyMaker cut(code_version());
+  cut.add("cut").add(key_from(found->second));
+  keys["cut " + std::to_string(last)] = add(cut, recipe.cuts[last]).key().text();
 }
 
 } // namespace pith

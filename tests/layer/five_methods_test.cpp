@@ -161,6 +161,15 @@ TEST(FiveMethods, PatchesSelectByHeightWithGrace) {
   }
 }
 
+/// On a facet whose corners show (0, 0), (2, 0) and (0, 2): the centre of a texel of 64².
+SimplexPoint texel_center(int i, int j) {
+  SimplexPoint point;
+  point.barycentric[1] = (i + 0.5f) / 128;
+  point.barycentric[2] = (j + 0.5f) / 128;
+  point.barycentric[0] = 1 - point.barycentric[1] - point.barycentric[2];
+  return point;
+}
+
 TEST(FiveMethods, HistogramMixingKeepsMeanAndVariance) {
   // One triangle over the whole texture, two patches of independent noise at equal weights, read at texel centres.
   Layer layer;
@@ -180,10 +189,7 @@ TEST(FiveMethods, HistogramMixingKeepsMeanAndVariance) {
     const std::span<const Lookup> both(layer.lookup), first = both.first(1); // `over` reads one noise alone
     for (int j = 0; j < 64; ++j)
       for (int i = 0; i < 64; ++i) {
-        SimplexPoint point;
-        point.barycentric[1] = (i + 0.5f) / 128;
-        point.barycentric[2] = (j + 0.5f) / 128;
-        point.barycentric[0] = 1 - point.barycentric[1] - point.barycentric[2];
+        const SimplexPoint point = texel_center(i, j);
         const LayerValue at = composite(reader, row == 0 ? first : both, point);
         const double value = at.value[0] / at.coverage;
         mean[row] += value / 4096;
@@ -232,10 +238,7 @@ TEST(FiveMethods, MixingAboutAMeanThatVariesKeepsMeanAndVariance) {
     Row row;
     for (int j = 0; j < 64; ++j)
       for (int i = 0; i < 64; ++i) {
-        SimplexPoint point;
-        point.barycentric[1] = (i + 0.5f) / 128;
-        point.barycentric[2] = (j + 0.5f) / 128;
-        point.barycentric[0] = 1 - point.barycentric[1] - point.barycentric[2];
+        const SimplexPoint point = texel_center(i, j);
         const LayerValue at = composite(reader, layer.lookup, point);
         EXPECT_FLOAT_EQ(at.coverage, 1);
         row.add(at.value[0], j);

@@ -102,10 +102,15 @@ std::uint64_t priority_of(const Vec3d& place, std::uint64_t seed) {
                  std::bit_cast<std::uint64_t>(place.z()));
 }
 
+void show(const Exemplar& exemplar, Layer& layer) {
+  layer.name = exemplar.name;
+  layer.exemplar.push_back(exemplar);
+}
+
 class Filler {
 public:
   Filler(const LapInput& input, const Exemplar& exemplar, const LapOptions& options)
-      : input_(input), options_(options), traits_(traits_of(options.type)),
+      : input_(input), exemplar_(exemplar), options_(options), traits_(traits_of(options.type)),
         mesh_(simplices_of(input.mesh, input.region)),
         pastes_(mesh_, coverage(), masks_of(options), options.structured), aligner_(exemplar, options.structured),
         attempts_(mesh_.count, 0), failures_(mesh_.count, 0), workspace_(most_seeds) {
@@ -127,20 +132,27 @@ public:
               [&](auto a, auto b) { return std::pair(priority[a], a) < std::pair(priority[b], b); });
   }
 
-  const Simplices& simplices() const { return mesh_; }
-
   LapResult run(const Progress& progress) {
     const double all = static_cast<double>(std::max<std::size_t>(1, queue_.size()));
+    const double pasting = options_.structured ? 0.7 : 1; // of the time
     while (pastes_.coverage().open_count() > 0) {
-      report(progress, 1 - pastes_.coverage().open_count() / all);
+      report(progress, pasting * (1 - pastes_.coverage().open_count() / all));
       paste(next_seeds());
       ++statistics_.rounds;
     }
-    report(progress, 1);
     LapResult result;
-    statistics_.pastes = pastes_.count();
     result.layer = pastes_.take_layer();
     result.layer.region = input_.region;
+    show(exemplar_, result.layer);
+    if (options_.structured)
+      cut_seams(mesh_, coverage(), result.layer,
+                [&](double done) { return !progress || progress(pasting + (1 - pasting) * done); });
+    if (options_.preserve_variance) {
+      for (int a = 0; a < 3; ++a) result.layer.blend.mean_over[a] = !traits_.imposed[a];
+      result.layer.blend.correlation = correlation_where_mixed(mesh_, result.layer);
+    }
+    report(progress, 1);
+    statistics_.pastes = result.layer.patch.size();
     statistics_.lookups = result.layer.lookup.size();
     if (!shares_.empty()) {
       std::nth_element(shares_.begin(), shares_.begin() + shares_.size() / 2, shares_.end());
@@ -153,7 +165,6 @@ public:
 private:
   static constexpr std::size_t most_seeds = 16; ///< in one round; fixed, so that the result is
 
-public:
   /// With nothing covered yet.
   Coverage coverage() const {
     std::vector<float> size(mesh_.count, -1.0f);
@@ -170,7 +181,6 @@ public:
     return Coverage(mesh_.corners, size, options_.sample_spacing, options_.coverage_order);
   }
 
-private:
   /// Open simplices in order of priority that keep a texture width from one another (§5.2.3).
   std::vector<std::uint32_t> next_seeds() {
     std::erase_if(queue_, [&](std::uint32_t s) { return !pastes_.coverage().open(s); });
@@ -315,6 +325,7 @@ private:
   }
 
   const LapInput& input_;
+  const Exemplar& exemplar_;
   const LapOptions& options_;
   const TextureTraits& traits_;
   Simplices mesh_;
@@ -334,32 +345,13 @@ private:
 
 LapResult lap(const LapInput& input, const Exemplar& exemplar, const LapOptions& options, const Progress& progress) {
   check(input, exemplar, options);
-  const TextureTraits& traits = traits_of(options.type);
-  const auto named = [&](LapResult result) {
-    result.layer.name = exemplar.name;
-    result.layer.exemplar.push_back(exemplar);
-    return result;
-  };
-  if (options.type == TextureType::tensor_2d) { // nothing tiles: one paste shows the whole exemplar
-    LapResult result;
-    result.layer = affine_layer(input);
-    result.statistics.pastes = 1;
-    result.statistics.lookups = result.layer.lookup.size();
-    result.statistics.median_share_used = 1;
-    return named(std::move(result));
-  }
-  Filler filler(input, exemplar, options);
-  LapResult result = named(filler.run(progress));
-  if (options.structured) {
-    cut_seams(filler.simplices(), filler.coverage(), result.layer);
-    result.statistics.lookups = result.layer.lookup.size();
-    result.statistics.pastes = result.layer.patch.size();
-  }
-  if (options.preserve_variance) {
-    Blend& blend = result.layer.blend;
-    for (int a = 0; a < 3; ++a) blend.mean_over[a] = !traits.imposed[a];
-    blend.correlation = correlation_where_mixed(filler.simplices(), result.layer);
-  }
+  if (options.type != TextureType::tensor_2d) return Filler(input, exemplar, options).run(progress);
+  LapResult result; // nothing tiles: one paste shows the whole exemplar
+  result.layer = affine_layer(input);
+  show(exemplar, result.layer);
+  result.statistics.pastes = 1;
+  result.statistics.lookups = result.layer.lookup.size();
+  result.statistics.median_share_used = 1;
   return result;
 }
 

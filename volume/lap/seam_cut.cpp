@@ -1,6 +1,5 @@
 #include "volume/lap/seam_cut.h"
 
-#include "volume/base/parallel.h"
 #include "volume/lap/min_cut.h"
 #include "volume/layer/composite.h"
 
@@ -36,23 +35,25 @@ struct Grid {
 
 /// Steps from each texel to the nearest that is not opaque by half, or out of the mask where it ends.
 std::vector<std::uint16_t> depth_of(const Mask& mask, const Grid& grid) {
-  constexpr std::uint16_t unset = 0xffff;
-  std::vector<std::uint16_t> depth(grid.count, unset);
+  std::vector<std::uint16_t> depth(grid.count, 0xffff);
   std::vector<std::size_t> front, next;
   for (std::size_t i = 0; i < grid.count; ++i) {
-    bool border = mask.alpha[i] < 128;
-    for (int axis = 0; axis < 3 && !border; ++axis)
-      for (int step : {-1, 1}) border |= !grid.open[axis] && grid.neighbor(i, axis, step) == Grid::outside;
-    if (border) depth[i] = mask.alpha[i] < 128 ? 0 : 1, front.push_back(i);
+    bool at_end = false;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const int step : {-1, 1}) at_end |= !grid.open[axis] && grid.neighbor(i, axis, step) == Grid::outside;
+    if (mask.alpha[i] >= 128 && !at_end) continue;
+    depth[i] = mask.alpha[i] < 128 ? 0 : 1;
+    front.push_back(i);
   }
-  for (std::uint16_t d = 1; !front.empty(); ++d) {
+  for (; !front.empty(); front.swap(next)) {
     next.clear();
     for (const std::size_t i : front)
       for (int axis = 0; axis < 3; ++axis)
-        for (int step : {-1, 1})
-          if (const std::size_t j = grid.neighbor(i, axis, step); j != Grid::outside && depth[j] > d)
-            depth[j] = static_cast<std::uint16_t>(std::min<int>(depth[j], depth[i] + 1)), next.push_back(j);
-    front.swap(next);
+        for (const int step : {-1, 1})
+          if (const std::size_t j = grid.neighbor(i, axis, step); j != Grid::outside && depth[j] > depth[i] + 1) {
+            depth[j] = static_cast<std::uint16_t>(depth[i] + 1);
+            next.push_back(j);
+          }
   }
   return depth;
 }
@@ -88,7 +89,7 @@ public:
 
   /// From the lowest patch up: what lies beneath one is final when its turn comes. Patches that share no simplex go
   /// side by side.
-  void cut_all() {
+  void cut_all(const Progress& progress) {
     std::vector<std::uint32_t> level(layer_.patch.size(), 0), highest(mesh_.count, 0);
     for (std::uint32_t p = static_cast<std::uint32_t>(layer_.patch.size()); p-- > 0;) { // the first paste lies on top
       for (const std::uint32_t i : lookups_[p]) level[p] = std::max(level[p], highest[row_of_[i]]);
@@ -99,15 +100,17 @@ public:
       if (batch.size() <= level[p]) batch.resize(level[p] + 1);
       batch[level[p]].push_back(p);
     }
+    std::size_t done = 0;
     for (const std::vector<std::uint32_t>& patches : batch) {
+      report(progress, static_cast<double>(done) / static_cast<double>(level.size()));
+      done += patches.size();
       parallel_for(patches.size(), 1, [&](std::size_t i) { cut(patches[i]); });
       for (const std::uint32_t p : patches) reader_->mask[p] = MaskGrid(layer_.mask[p]);
     }
   }
 
-  /// Where the cut masks leave a sample uncovered that the old ones covered, these get their old alpha back. Returns
-  /// the number of masks.
-  std::size_t restore_coverage(const Coverage& coverage) {
+  /// Where the cut masks leave a sample uncovered that the old ones covered, these get their old alpha back.
+  void restore_coverage(const Coverage& coverage) {
     std::vector<std::uint8_t> touched(layer_.patch.size(), 0);
     for (std::uint32_t s = 0; s < mesh_.count; ++s) {
       if (!coverage.open(s)) continue;
@@ -118,18 +121,15 @@ public:
         if (coverage_of(*reader_, row, point).coverage >= 1 - 1 / 255.0f) continue;
         for (const Lookup& lookup : row) {
           const LookupSight sight = sight_of(*reader_, lookup, b);
+          touched[lookup.patch] = 1;
           for_texels_around(lookup.patch, sight.w, [&](std::size_t texel) {
-            std::uint8_t& alpha = layer_.mask[lookup.patch].alpha[texel];
-            touched[lookup.patch] |= alpha != original_[lookup.patch].alpha[texel];
-            alpha = original_[lookup.patch].alpha[texel];
+            layer_.mask[lookup.patch].alpha[texel] = original_[lookup.patch].alpha[texel];
           });
         }
       }
     }
-    std::size_t masks = 0;
     for (std::uint32_t p = 0; p < touched.size(); ++p)
-      if (touched[p]) reader_->mask[p] = MaskGrid(layer_.mask[p]), ++masks;
-    return masks;
+      if (touched[p]) reader_->mask[p] = MaskGrid(layer_.mask[p]);
   }
 
   /// Keeps only look-ups that can be seen at a sample, from the uppermost down.
@@ -380,14 +380,11 @@ private:
 
 } // namespace
 
-SeamCutStatistics cut_seams(const Simplices& mesh, Coverage coverage, Layer& layer) {
-  SeamCutStatistics statistics;
+void cut_seams(const Simplices& mesh, Coverage coverage, Layer& layer, const Progress& progress) {
   SeamCutter cutter(mesh, layer);
-  cutter.cut_all();
-  statistics.patches = layer.patch.size();
-  statistics.restored = cutter.restore_coverage(coverage);
+  cutter.cut_all(progress);
+  cutter.restore_coverage(coverage);
   cutter.drop_hidden(coverage);
-  return statistics;
 }
 
 } // namespace pith

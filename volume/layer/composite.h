@@ -1,7 +1,6 @@
 #pragma once
 // The one compositor: the look-ups of one layer on one simplex become one value, by the layer's blend rule.
-#include "volume/layer/layer.h"
-#include "volume/layer/sample.h"
+#include "volume/layer/layer_reader.h"
 #include "volume/mesh/tet_mesh.h"
 
 #include <span>
@@ -14,39 +13,6 @@ std::span<const Lookup> lookups_of(const Layer& layer, std::uint32_t simplex);
 
 /// Gradients (1/mm) of a tet's barycentric coordinates.
 std::array<Vec3d, 4> barycentric_gradients(const TetMesh& mesh, TetId tet);
-
-/// A layer with what is needed to read it fast: grids for every mip level, decoding tables, and the corner rows of
-/// every look-up side by side (with 3 coordinates in a tet one line of the cache instead of four). Refers to the
-/// layer. Memory: 68 bytes per look-up, and per texel 2.3 for each component.
-struct LayerReader {
-  explicit LayerReader(const Layer& layer, bool mips);
-
-  struct Source {
-    std::vector<TexelGrid> level;    ///< finest first
-    std::vector<TexelGrid> gaussian; ///< the twins in standard deviations, same levels; empty without
-    TexelGrid mean;                  ///< over the axes that Blend::mean_over names, of the finest; unset without
-  };
-  /// A patch: exemplar coordinates are scale · w + offset (its frame, then the layer's evaluation).
-  struct PatchReader {
-    Lanes scale{}, offset{};
-    const MaskGrid* mask; ///< null: none
-    const Source* source;
-  };
-  const Layer* layer;
-  std::vector<Source> source; ///< per exemplar
-  std::vector<MaskGrid> mask;
-  std::vector<PatchReader> patch;
-  std::size_t record_size = 0;        ///< (width + 1) · corners
-  LargeArray<float> record;           ///< per look-up, its corner rows
-  LargeArray<std::uint32_t> patch_of; ///< per look-up
-  int components = 0;
-  int height_component = -1; ///< of the first height channel
-  bool has_directions = false;
-  std::array<bool, max_components> preserved{}; ///< components whose mean and variance mixing preserves
-
-  LayerReader(LayerReader&&) = default; ///< `patch` points into vectors whose memory moves along
-  LayerReader(const LayerReader&) = delete;
-};
 
 /// A place on one simplex: a tet (4 corners) or a boundary facet (3).
 struct SimplexPoint {
