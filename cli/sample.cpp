@@ -61,8 +61,9 @@ void run(const SampleOptions& options, const Session& session) {
   const double near = 3 * std::cbrt(bounds_of(mesh).extent().prod() / static_cast<double>(mesh.tet_count()));
 
   std::vector<float> value(count * width, std::numeric_limits<float>::quiet_NaN());
-  std::atomic<std::size_t> outside{0}, finished{0};
+  std::atomic<std::size_t> outside{0};
   const Progress progress = session.progress("sample");
+  SharedProgress finished(progress, count);
   const auto begin_sampling = std::chrono::steady_clock::now();
   parallel_blocks(count, 4096, [&](std::size_t begin, std::size_t end) {
     TetId last; // the last owner: points of a file are often neighbours
@@ -86,7 +87,7 @@ void run(const SampleOptions& options, const Session& session) {
       for (std::size_t c = 0; c < columns.further.size(); ++c) row[4 + c] = material.value[columns.further[c]];
     }
     outside += missed;
-    report(progress, static_cast<double>(finished += end - begin) / static_cast<double>(count));
+    finished.add(end - begin);
   });
   const double sampling = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_sampling).count();
   session.stop_if_asked();

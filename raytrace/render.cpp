@@ -4,9 +4,7 @@
 #include "volume/base/error.h"
 
 #include <Eigen/Geometry>
-#include <atomic>
 #include <chrono>
-#include <mutex>
 
 namespace pith {
 
@@ -63,8 +61,7 @@ Film render(const Scene& scene, const View& view, const Lights& lights, const Re
   const std::size_t tiles = std::size_t(across) * down;
   const int passes = (options.samples + samples_per_pass - 1) / samples_per_pass;
   const auto start = std::chrono::steady_clock::now();
-  std::atomic<std::size_t> finished = 0;
-  std::mutex reporting;
+  SharedProgress finished(progress, tiles * passes);
   report(progress, 0);
 
   for (int done = 0; done < options.samples; done += samples_per_pass) {
@@ -78,9 +75,7 @@ Film render(const Scene& scene, const View& view, const Lights& lights, const Re
           for (int s = done; s < end; ++s)
             add(pixel, tracer.sample(number, x, y, static_cast<std::uint32_t>(options.first_sample + s)));
         }
-      const std::size_t so_far = ++finished;
-      if (const std::unique_lock lock(reporting, std::try_to_lock); lock)
-        report(progress, double(so_far) / (tiles * passes));
+      finished.add();
     };
     try {
       parallel_blocks(tiles, 1, one_tile);

@@ -7,7 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <thread>
 
 namespace pith {
 namespace {
@@ -69,6 +72,33 @@ TEST(Parallel, ReportCancelsWhenAskedTo) {
   EXPECT_NO_THROW(report({}, 0.5));
   EXPECT_NO_THROW(report([](double) { return true; }, 0.5));
   EXPECT_THROW(report([](double) { return false; }, 0.5), Cancelled);
+}
+
+TEST(Parallel, SharedProgressReportsOneCallAtATime) {
+  std::atomic<int> inside{0}, calls{0};
+  std::atomic<bool> together{false};
+  double furthest = 0;
+  const Progress progress = [&](double fraction) {
+    if (++inside > 1) together = true;
+    std::this_thread::sleep_for(std::chrono::microseconds(200)); // long enough for another to arrive
+    furthest = std::max(furthest, fraction);
+    ++calls;
+    --inside;
+    return true;
+  };
+  SharedProgress shared(progress, 400);
+  parallel_for(400, 1, [&](std::size_t) {
+    std::this_thread::sleep_for(std::chrono::microseconds(50));
+    shared.add();
+  });
+  EXPECT_FALSE(together);
+  EXPECT_GT(calls, 0);
+  EXPECT_LE(furthest, 1);
+  EXPECT_GT(furthest, 0.5);
+
+  const Progress stop = [](double) { return false; };
+  SharedProgress stopped(stop, 8);
+  EXPECT_THROW(parallel_for(8, 1, [&](std::size_t) { stopped.add(); }), Cancelled);
 }
 
 TEST(Image, TransferCurvesAreInverse) {

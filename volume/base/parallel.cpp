@@ -39,4 +39,10 @@ void report(const Progress& progress, double fraction) {
   if (progress && !progress(fraction)) throw Cancelled();
 }
 
+void SharedProgress::add(std::size_t done) {
+  const std::size_t so_far = done_ += done;
+  if (const std::unique_lock lock(reporting_, std::try_to_lock); lock)
+    report(progress_, static_cast<double>(so_far) / static_cast<double>(total_));
+}
+
 } // namespace pith

@@ -1,8 +1,10 @@
 #pragma once
 // Parallel loops whose results do not depend on the number of threads: work is split into blocks of a size that the
 // caller fixes, and reductions run over a fixed tree.
+#include <atomic>
 #include <cstddef>
 #include <functional>
+#include <mutex>
 #include <vector>
 
 namespace pith {
@@ -19,8 +21,8 @@ void parallel_for(std::size_t count, std::size_t block, const Body& body) {
   });
 }
 
-/// Sum of term(i) over [0, count): blocks are summed in order inside, then pairwise, so that the rounding is always the
-/// same.
+/// Sum of term(i) over [0, count): blocks are summed in order inside, then pairwise, so that the rounding is always
+/// the same.
 double ordered_sum(std::size_t count, const std::function<double(std::size_t)>& term);
 
 /// Limits the threads of everything that runs while this object lives; 0 means all cores.
@@ -35,11 +37,26 @@ private:
   void* control_;
 };
 
-/// How far work has come. The callback may be called from any thread, one call at a time per stage; returning false asks
-/// for the work to stop, and the function that took it throws Cancelled soon after.
+/// How far work has come. The callback may be called from any thread, one call at a time per stage; returning false
+/// asks for the work to stop, and the function that took it throws Cancelled soon after.
 using Progress = std::function<bool(double fraction)>;
 
 /// Calls `progress` if there is one and throws Cancelled when it says stop.
 void report(const Progress& progress, double fraction);
+
+/// Progress of work that several threads share: for calls from inside a parallel loop. `progress` must outlive it.
+class SharedProgress {
+public:
+  SharedProgress(const Progress& progress, std::size_t total) : progress_(progress), total_(total) {}
+
+  /// Adds to what is done and reports, unless another thread is just doing so. Throws Cancelled.
+  void add(std::size_t done = 1);
+
+private:
+  const Progress& progress_;
+  std::size_t total_;
+  std::atomic<std::size_t> done_{0};
+  std::mutex reporting_;
+};
 
 } // namespace pith

@@ -6,7 +6,6 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <numeric>
 
@@ -35,7 +34,7 @@ CoverageMeasure coverage_measure(const Root& root, const CoverageOptions& option
 
   std::vector<float> coverage(options.points);
   std::vector<int> layers(options.points), reads(options.points);
-  std::atomic<std::size_t> finished{0};
+  SharedProgress finished(progress, options.points);
   parallel_blocks(options.points, 2048, [&](std::size_t begin, std::size_t end) {
     Sighting sighting;
     for (std::size_t i = begin; i < end; ++i) {
@@ -55,7 +54,7 @@ CoverageMeasure coverage_measure(const Root& root, const CoverageOptions& option
                              {point.tet, point.barycentric, true})
                      .lookups_read;
     }
-    report(progress, static_cast<double>(finished += end - begin) / static_cast<double>(options.points));
+    finished.add(end - begin);
   });
 
   std::size_t worst = 0;

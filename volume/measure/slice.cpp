@@ -4,7 +4,6 @@
 #include "volume/layer/tables.h"
 #include "volume/measure/sighting.h"
 
-#include <atomic>
 #include <cmath>
 
 namespace pith {
@@ -123,11 +122,11 @@ std::vector<Slice> model_slices(const Root& root, const std::vector<SliceGrid>& 
                                 const Progress& progress) {
   const int component = color_of(root);
   std::vector<Slice> slices(grids.size());
-  std::atomic<std::size_t> finished{0};
+  SharedProgress finished(progress, grids.size());
   parallel_for(grids.size(), 1, [&](std::size_t i) {
     slices[i] = empty_slice(grids[i], options.sources);
     for (int y = 0; y < grids[i].height; ++y) fill_row(root, grids[i], options, component, y, slices[i]);
-    report(progress, static_cast<double>(++finished) / static_cast<double>(grids.size()));
+    finished.add();
   });
   return slices;
 }
