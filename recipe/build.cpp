@@ -85,7 +85,7 @@ private:
     surface_key_ = surface.key();
     run_.announce("surface", surface_key_);
     KeyMaker tets = run_.key("tets").add(surface_key_);
-    Key meshed = add(tets, recipe_.tetrahedralize).key();
+    Key meshed = add(tets, meshing()).key();
     run_.announce("tets", meshed);
     meshed_keys_.push_back(meshed);
     for (std::size_t k = 0; k < recipe_.divides.size(); ++k) {
@@ -204,6 +204,12 @@ private:
     return strokes;
   }
 
+  TetrahedralizeOptions meshing() const {
+    TetrahedralizeOptions options = recipe_.tetrahedralize;
+    options.core = axis_strokes();
+    return options;
+  }
+
   /// The root: what TetGen made, refined once for all that follows.
   std::shared_ptr<const TetrahedralizeResult> root() {
     return run_.result<TetrahedralizeResult>("refine", tets_key_, true, [&](const Progress&) {
@@ -244,8 +250,7 @@ private:
       const auto surface = run_.result<TriMesh>("surface", surface_key_, false, [&](const Progress&) {
         return surface_of(recipe_.surface, surface_path_);
       });
-      TetrahedralizeResult result =
-          tetrahedralize(*surface, surface_name(recipe_.surface), recipe_.tetrahedralize, progress);
+      TetrahedralizeResult result = tetrahedralize(*surface, surface_name(recipe_.surface), meshing(), progress);
       result.surface = {};
       return result;
     });

@@ -18,13 +18,17 @@ constexpr double endless = std::numeric_limits<double>::infinity();
 constexpr int format_version = 1;
 
 TetrahedralizeOptions tetrahedralize_from(const JsonNode& node) {
-  node.object({"method", "interior_edge", "boundary_edge", "radius_edge", "wrap_alpha", "wrap_offset", "time_limit"});
+  node.object({"method", "interior_edge", "boundary_edge", "core_edge", "core_growth", "radius_edge", "wrap_alpha",
+               "wrap_offset", "time_limit"});
   TetrahedralizeOptions result;
   if (const auto method = node.find("method"))
     result.method = static_cast<TetrahedralizeOptions::Method>(method->choice({"automatic", "tetgen", "wrap"}));
   const NumberRange edge{0, endless, false, "positive (0: the default)", "give millimetres"};
   node.optional_number("interior_edge", result.interior_edge, edge);
   node.optional_number("boundary_edge", result.boundary_edge, edge);
+  node.optional_number("core_edge", result.core_edge, edge);
+  node.optional_number("core_growth", result.core_growth,
+                       {0.01, endless, false, "0.01 or more", "give mm of edge per mm of distance"});
   node.optional_number("radius_edge", result.radius_edge, {1.1, 10, false, "1.1 to 10", "1.4 makes good tets"});
   node.optional_number("wrap_alpha", result.wrap_alpha,
                        {1e-4, 1, false, "0.0001 to 1", "give a fraction of the diagonal"});
@@ -207,8 +211,9 @@ void read_frame(const JsonNode& node, FrameOptions& frame) {
 }
 
 void read_fill(const JsonNode& node, LapOptions& fill) {
-  node.object({"frame_tolerance", "scale_tolerance", "sample_spacing", "coverage_order", "mask_variants", "align",
-               "preserve_variance", "structured", "max_attempts"});
+  node.object({"frame_tolerance", "length_weight", "scale_tolerance", "sample_spacing", "coverage_order",
+               "mask_variants", "align", "preserve_variance", "structured", "max_attempts"});
+  node.optional_number("length_weight", fill.length_weight, {0, 1, true, "above 0, to 1", "1 is as in the paper"});
   node.optional_number("frame_tolerance", fill.frame_tolerance, {0, pi, true, "above 0, to pi", "give radians"});
   node.optional_number("scale_tolerance", fill.scale_tolerance,
                        {1, endless, true, "above 1", "give a ratio of two scales"});

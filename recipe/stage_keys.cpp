@@ -26,8 +26,12 @@ KeyMaker& add(KeyMaker& maker, const LevelSetShape& shape) {
 } // namespace
 
 KeyMaker& add(KeyMaker& maker, const TetrahedralizeOptions& options) {
+  if (options.core_edge > 0)
+    for (const std::vector<Vec3d>& line : options.core) maker.add(line);
   return maker.add(static_cast<int>(options.method))
       .add(options.interior_edge)
+      .add(options.core_edge)
+      .add(options.core_growth)
       .add(options.boundary_edge)
       .add(options.radius_edge)
       .add(options.wrap_alpha)
@@ -84,6 +88,7 @@ KeyMaker& add(KeyMaker& maker, const LapOptions& options) {
   maker.add(static_cast<int>(options.type))
       .add(options.seed)
       .add(options.frame_tolerance)
+      .add(options.length_weight)
       .add(options.scale_tolerance)
       .add(options.coverage_order)
       .add(options.sample_spacing)

@@ -34,6 +34,8 @@ json json_from(const TetrahedralizeOptions& options) {
   const char* methods[] = {"automatic", "tetgen", "wrap"};
   if (options.method != usual.method) result["method"] = methods[static_cast<int>(options.method)];
   put(result, "interior_edge", options.interior_edge, usual.interior_edge);
+  put(result, "core_edge", options.core_edge, usual.core_edge);
+  put(result, "core_growth", options.core_growth, usual.core_growth);
   put(result, "boundary_edge", options.boundary_edge, usual.boundary_edge);
   put(result, "radius_edge", options.radius_edge, usual.radius_edge);
   put(result, "wrap_alpha", options.wrap_alpha, usual.wrap_alpha);
@@ -202,6 +204,7 @@ json json_from(const Solid& solid) {
   const LapOptions usual;
   json fill = json::object();
   put(fill, "frame_tolerance", solid.fill.frame_tolerance, usual.frame_tolerance);
+  put(fill, "length_weight", solid.fill.length_weight, usual.length_weight);
   put(fill, "scale_tolerance", solid.fill.scale_tolerance, usual.scale_tolerance);
   put(fill, "sample_spacing", solid.fill.sample_spacing, usual.sample_spacing);
   put(fill, "coverage_order", solid.fill.coverage_order, usual.coverage_order);

@@ -99,6 +99,36 @@ TEST(Tetrahedralize, InteriorEdgeGradesTheInside) {
   EXPECT_NEAR(region_volume(b.mesh, 0), signed_volume(sphere), 1e-12);
 }
 
+TEST(Tetrahedralize, TetsAreFinerAlongACore) {
+  TetrahedralizeOptions options = usual();
+  options.interior_edge = 0.5;
+  const TriMesh sphere = sphere_surface(3);
+  const auto plain = tetrahedralize(sphere, "plain", options);
+  options.core = {{{0, 0, -0.5}, {0, 0, 0}, {0, 0, 0.5}}};
+  EXPECT_EQ(tetrahedralize(sphere, "no edge asked for", options).mesh.corner, plain.mesh.corner);
+  options.core_edge = 0.05;
+  options.core_growth = 0.3;
+  const auto result = tetrahedralize(sphere, "cored", options);
+  expect_sound(result);
+  EXPECT_NEAR(region_volume(result.mesh, 0), signed_volume(sphere), 1e-12);
+  EXPECT_EQ(boundary_of(result.mesh).facet_count(), boundary_of(plain.mesh).facet_count());
+  std::size_t near = 0, far = 0, larger = 0; // at the surface, whose edges stay, and where TetGen improves shapes
+  for (const TetId t : all_ids<TetId>(result.mesh.tet_count())) {
+    const Vec3d x = barycenter(result.mesh, t);
+    const double distance = (x - Vec3d(0, 0, std::clamp(x.z(), -0.5, 0.5))).norm(), edge = 0.05 + 0.3 * distance;
+    larger += signed_volume(result.mesh, t) > 1.001 * edge * edge * edge / (6 * std::sqrt(2.0)) ? 1 : 0;
+    (distance < 0.15 ? near : far) += 1;
+  }
+  EXPECT_LT(larger, result.mesh.tet_count() / 50);
+  EXPECT_GT(near, 1000u);
+  EXPECT_LT(far, 10 * near); // nor finer everywhere
+
+  options.core_edge = 1e-7;
+  EXPECT_THROW((void)tetrahedralize(sphere, "endless", options), InvalidInput);
+  options.core_edge = -1;
+  EXPECT_THROW((void)tetrahedralize(sphere, "negative", options), InvalidInput);
+}
+
 TEST(Tetrahedralize, BoundaryEdgeSplitsTheSurfaceWithoutMovingIt) {
   TetrahedralizeOptions options = usual();
   options.boundary_edge = 0.3;

@@ -19,13 +19,16 @@ SampleLattice::SampleLattice(int corners, int order) {
 }
 
 Coverage::Coverage(int corners, std::span<const float> size, double spacing, int largest_order) {
+  // A piece may end within one simplex, however small: where two do, less would see only where one of them is opaque.
+  const double least_order = std::min(4, largest_order);
   for (int order = 1; order <= largest_order; ++order) lattice_.emplace_back(corners, order);
   order_.resize(size.size(), 1);
   open_.assign(size.size(), 0);
   begin_.assign(size.size() + 1, 0);
   for (std::size_t i = 0; i < size.size(); ++i) {
     if (size[i] >= 0) {
-      order_[i] = static_cast<std::uint8_t>(std::clamp(std::ceil(size[i] / spacing), 2.0, double(largest_order)));
+      order_[i] =
+          static_cast<std::uint8_t>(std::clamp(std::ceil(size[i] / spacing), least_order, double(largest_order)));
       open_[i] = 1;
       ++open_count_;
     }

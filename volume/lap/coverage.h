@@ -14,8 +14,8 @@ struct SampleLattice {
   std::vector<std::array<float, 4>> barycentric;
 };
 
-/// What shines through at every sample of every simplex: 1 uncovered, 0 opaque. Each simplex has a lattice whose
-/// spacing is at most `spacing` texture widths, up to `largest_order`.
+/// What shines through at every sample of every simplex: 1 uncovered, 0 opaque. Each simplex has a lattice of
+/// order 4 at least, whose spacing is at most `spacing` texture widths, up to `largest_order`.
 class Coverage {
 public:
   /// `size`: for each simplex its longest edge in texture widths; simplices with size < 0 are left out (never open).

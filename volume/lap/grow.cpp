@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace pith {
 
@@ -28,7 +29,9 @@ public:
          GrowWorkspace& workspace)
       : mesh_(mesh), field_(field), mask_(mask), rule_(rule), workspace_(workspace),
         frames_(field.frames, rule.seed_frame), seed_scale_(field.scale[seed]), pin_(pin), pin_at_(at),
-        smallest_cosine_(std::cos(rule.frame_tolerance)) {
+        smallest_cosine_(std::cos(rule.frame_tolerance)), farthest_cosine_(rule.reach > std::numbers::pi ? -2
+                                                                           : rule.reach > 0 ? std::cos(rule.reach)
+                                                                                            : 2) {
     workspace_.begin(mesh.count, mesh.vertex_count);
     Clump& clump = growth_.clump;
     clump.axes = mask.axes;
@@ -53,7 +56,7 @@ public:
         break;
       }
     }
-    if (!rule_.mirrored) give_back_mirrored();
+    give_back_mirrored();
     set_weights();
     return std::move(growth_);
   }
@@ -85,6 +88,7 @@ private:
     clump.simplex.push_back(s);
     const bool follows = follows_seed(s);
     clump.confidence.push_back(follows ? 1.0f : little_confidence);
+    if (!field_.length_weight.empty()) clump.length_weight.push_back(follows ? field_.length_weight[s] : 1.0f);
     target_.push_back(target(s, follows));
     for (int i = 0; i < mesh_.corners; ++i) {
       const std::uint32_t v = corner(s, i);
@@ -156,7 +160,7 @@ private:
       for (int k = 0; k < mesh_.corners; ++k) {
         const std::uint32_t next = mesh_.neighbor[std::size_t(clump.simplex[at]) * mesh_.corners + k];
         if (next == Simplices::none || workspace_.local_simplex(next) != Simplices::none) continue;
-        if (!rule_.through && !follows_seed(next) && !singular(next)) continue;
+        if (!follows_seed(next) && !singular(next) && !(frames_.cosine(next) >= farthest_cosine_)) continue;
         predict(next, w);
         if (!under_mask(w, mesh_.corners)) continue;
         add_simplex(next);
@@ -188,17 +192,19 @@ private:
     for (std::uint32_t s = 0; s < clump.simplex.size(); ++s) {
       const auto at = [&](int i) { return Vec3d::Map(&clump.coordinate[std::size_t(clump.corner[4 * s + i]) * 3]); };
       const Vec3d origin = at(0);
-      if ((at(1) - origin).cross(at(2) - origin).dot(at(3) - origin) < 0) {
+      if (!(rule_.mirrored && s == 0) && (at(1) - origin).cross(at(2) - origin).dot(at(3) - origin) < 0) {
         workspace_.set_simplex(clump.simplex[s], Simplices::none);
         continue;
       }
       clump.simplex[kept] = clump.simplex[s];
       clump.confidence[kept] = clump.confidence[s];
+      if (!clump.length_weight.empty()) clump.length_weight[kept] = clump.length_weight[s];
       for (int i = 0; i < 4; ++i) clump.corner[4 * kept + i] = clump.corner[4 * s + i];
       ++kept;
     }
     clump.simplex.resize(kept);
     clump.confidence.resize(kept);
+    if (!clump.length_weight.empty()) clump.length_weight.resize(kept);
     clump.corner.resize(4 * std::size_t(kept));
   }
 
@@ -207,7 +213,7 @@ private:
   void set_weights() {
     const Clump& clump = growth_.clump;
     growth_.weight.assign(clump.vertex.size(), 1.0f);
-    if (rule_.through) return;
+    if (farthest_cosine_ < -1) return;
     for (std::size_t s = 0; s < clump.simplex.size(); ++s)
       for (int k = 0; k < mesh_.corners; ++k) {
         const std::uint32_t next = mesh_.neighbor[std::size_t(clump.simplex[s]) * mesh_.corners + k];
@@ -236,7 +242,7 @@ private:
   double seed_scale_;
   std::array<double, 3> pin_;
   std::array<float, 4> pin_at_;
-  double smallest_cosine_;
+  double smallest_cosine_, farthest_cosine_;
   std::vector<Mat3d> target_; ///< per clump simplex
   Growth growth_;
 };

@@ -16,6 +16,7 @@ struct GrowField {
   std::array<double, 3> extent{1, 1, 1}; ///< texture widths that the mask's unit cube spans along each axis
   /// Per vertex: becomes that coordinate as it is (extent 1); empty: the coordinate is solved for.
   std::array<std::span<const float>, 3> coordinate{};
+  std::span<const float> length_weight{};   ///< per simplex, of the warp (Clump::length_weight); may be empty
   std::span<const std::uint8_t> singular{}; ///< per simplex: its frame means nothing; may be empty
   std::span<const std::uint8_t> pivot{};    ///< per vertex: frames turn around it (pivots.h); may be empty
 };
@@ -24,7 +25,9 @@ struct GrowRule {
   Mat3d seed_frame = Mat3d::Identity(); ///< the seed's, of seed_frame()
   double frame_tolerance = 1.1;         ///< radians; simplices that turn further from the seed's frame are left out
   double scale_tolerance = std::numeric_limits<double>::infinity(); ///< and those whose scale differs by this factor
-  bool through = false;  ///< take them all the same, with little confidence
+  /// Radians, above frame_tolerance: simplices that turn no further from the seed's frame are taken all the same,
+  /// with little confidence; above π: all of them, and the piece fades nowhere.
+  double reach = 0;
   bool mirrored = false; ///< keep simplices that end up in mirror image
 };
 

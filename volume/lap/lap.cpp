@@ -15,10 +15,12 @@
 #include "volume/lap/pastes.h"
 #include "volume/lap/pivots.h"
 #include "volume/lap/seam_cut.h"
+#include "volume/lap/turning.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 
 namespace pith {
 
@@ -124,6 +126,10 @@ public:
     field_.singular = input.singular;
     pivot_ = pivots_of(mesh_, field_.frames, input.singular);
     field_.pivot = pivot_;
+    if (options.length_weight < 1 && traits_.fixed_axes > 0) {
+      length_weight_ = length_weights();
+      field_.length_weight = length_weight_;
+    }
     for (std::uint32_t s = 0; s < mesh_.count; ++s)
       if (pastes_.coverage().open(s)) queue_.push_back(s);
     std::vector<std::uint64_t> priority(mesh_.count);
@@ -164,6 +170,15 @@ public:
 
 private:
   static constexpr std::size_t most_seeds = 16; ///< in one round; fixed, so that the result is
+
+  /// Per simplex, for the warp.
+  std::vector<float> length_weights() const {
+    constexpr double resolved = 0.7; // radians from a simplex to the next, from which on lengths count in full
+    std::vector<float> weight = turning_of(mesh_, field_.frames, field_.singular);
+    for (float& w : weight)
+      w = static_cast<float>(std::clamp(w * w / (resolved * resolved), options_.length_weight, 1.0));
+    return weight;
+  }
 
   /// With nothing covered yet.
   Coverage coverage() const {
@@ -280,15 +295,17 @@ private:
     Random random(paste.patch.key);
     paste.patch.mask = part * options_.mask_variants + random.below(options_.mask_variants);
 
-    // A seed whose point its paste failed to cover is tried again with more freedom: a wider tolerance, then none, at
-    // last in mirror image. (That pastes leave some of a large tet open is no failure.)
+    // A seed whose point its paste failed to cover is tried again with more freedom: a wider tolerance, then tets
+    // that turn further, then all, at last itself in mirror image. (That pastes leave some of a large tet open is no
+    // failure.)
     const int failures = failures_[seed];
     GrowRule rule;
     rule.seed_frame = seed_frame(field.frames, seed, random);
     rule.frame_tolerance = options_.frame_tolerance * (failures > 0 ? 1.5 : 1);
     if (traits_.uses_scale) rule.scale_tolerance = options_.scale_tolerance * (failures > 0 ? 1.5 : 1);
-    rule.through = failures > 1 || 3 * attempts_[seed] > options_.max_attempts;
-    rule.mirrored = failures > 2 || 3 * attempts_[seed] > 2 * options_.max_attempts;
+    if (failures > 1) rule.reach = std::numbers::pi / 2;
+    if (failures > 2 || 3 * attempts_[seed] > options_.max_attempts) rule.reach = 4;
+    rule.mirrored = failures > 3 || 3 * attempts_[seed] > 2 * options_.max_attempts;
     paste.growth = grow(mesh_, field, pastes_.masks()[paste.patch.mask], seed, pin, at, rule, workspace);
     pastes_.look(paste);
     std::array<bool, 3> free{};
@@ -333,6 +350,7 @@ private:
   Aligner aligner_;
   GrowField field_;
   std::vector<std::uint8_t> pivot_;
+  std::vector<float> length_weight_;
   std::vector<std::uint32_t> queue_;
   std::vector<int> attempts_; ///< pastes at each seed
   std::vector<int> failures_; ///< of them, those that left its point open

@@ -35,6 +35,10 @@ struct LapOptions {
   int mask_variants = 3;        ///< splotches of different outline for each part
   double frame_tolerance = 0.8; ///< largest angle between a tet's axes and the seed's, radians (§5.2.4)
   double scale_tolerance = 1.5; ///< largest ratio of their scales, where these are given (types 0, 1-a, 2-a)
+  /// What the lengths of a piece's axes count beside their directions when it is warped, 0 … 1 (1: as much, as in the
+  /// paper). Rays that spread from a core stay rays below 1; what lies across them is stretched instead. Where frames
+  /// turn by more from tet to tet than the mesh resolves, lengths count in full.
+  double length_weight = 0.3;
   double sample_spacing = 0.03; ///< of the coverage test, in texture widths
   int coverage_order = 12; ///< most samples per tet edge in that test; order 8 gives the paper's 165 points, between
                            ///< which coarse tets keep holes

@@ -1,7 +1,8 @@
 // Takayama et al. 2008, §5.2.5. The paper minimises, per tet, the differences d_r, d_s, d_t between the transformed
 // axes and the texture's; with R̃ = R/|R|² that is |∇u_a − R̃_a|² for each coordinate u_a, so the axes decouple and all
 // share one matrix, Σ w ∇λᵢ·∇λⱼ: a discrete Laplacian. We weight by volume (the paper counts tets), so that the
-// result does not depend on how finely a place is meshed.
+// result does not depend on how finely a place is meshed, and may weigh the part of the difference along R̃ less than
+// that across it; then each axis has a matrix of its own, with the same pattern.
 #include "volume/lap/warp.h"
 
 #include <algorithm>
@@ -11,17 +12,20 @@ namespace pith {
 
 namespace {
 
-/// The clump's Laplacian as compressed rows, without the diagonal's share of pins (the constant is fixed afterwards).
+/// A symmetric matrix over the clump's vertices as compressed rows, the diagonal apart. (It is singular: the constant
+/// is fixed afterwards.)
 struct Matrix {
   std::vector<std::uint32_t> begin, column;
   std::vector<double> value, diagonal;
+  /// Per clump simplex and pair i < j of corners, in that order: where their two entries stand.
+  std::vector<std::array<std::uint32_t, 2>> entry;
 };
 
-Matrix laplacian(const Simplices& mesh, const Clump& clump, const std::vector<double>& weight) {
-  const int n = mesh.corners;
+/// Rows and columns of a clump's matrix, its values 0.
+Matrix pattern_of(const Clump& clump, int n) {
   const std::size_t vertices = clump.vertex.size(), simplices = clump.simplex.size();
   Matrix m;
-  // Incidence: for each vertex the (simplex, corner) pairs, then its row by accumulation over them.
+  // Incidence: for each vertex the (simplex, corner) pairs, then its row over them.
   std::vector<std::uint32_t> first(vertices + 1, 0), incident(simplices * n);
   for (std::uint32_t c : clump.corner) ++first[c + 1];
   for (std::size_t v = 0; v < vertices; ++v) first[v + 1] += first[v];
@@ -29,33 +33,53 @@ Matrix laplacian(const Simplices& mesh, const Clump& clump, const std::vector<do
   for (std::size_t i = 0; i < clump.corner.size(); ++i)
     incident[fill[clump.corner[i]]++] = static_cast<std::uint32_t>(i);
 
+  const int pairs = n * (n - 1) / 2;
+  m.entry.resize(simplices * pairs);
   m.begin.reserve(vertices + 1);
   m.begin.push_back(0);
-  m.diagonal.assign(vertices, 0);
-  std::vector<std::uint32_t> slot(vertices, Simplices::none);
+  std::vector<std::uint32_t> slot(vertices, Simplices::none); // of a column in the row at hand, or an older one
   for (std::uint32_t v = 0; v < vertices; ++v) {
-    const std::size_t start = m.column.size();
+    const std::uint32_t start = m.begin.back();
     for (std::uint32_t k = first[v]; k < first[v + 1]; ++k) {
-      const std::uint32_t s = incident[k] / n, i = incident[k] % n;
-      const Vec3d* gradient = mesh.gradient.data() + std::size_t(clump.simplex[s]) * n;
+      const std::uint32_t s = incident[k] / n;
+      const int i = static_cast<int>(incident[k] % n);
       for (int j = 0; j < n; ++j) {
-        const double entry = weight[s] * gradient[i].dot(gradient[j]);
+        if (j == i) continue;
         const std::uint32_t u = clump.corner[s * n + j];
-        if (u == v) {
-          m.diagonal[v] += entry;
-        } else if (slot[u] != Simplices::none && slot[u] >= start && m.column[slot[u]] == u) {
-          m.value[slot[u]] += entry;
-        } else {
+        if (slot[u] == Simplices::none || slot[u] < start) {
           slot[u] = static_cast<std::uint32_t>(m.column.size());
           m.column.push_back(u);
-          m.value.push_back(entry);
         }
+        const int low = std::min(i, j), high = std::max(i, j);
+        const int pair = low * (2 * n - low - 1) / 2 + high - low - 1;
+        m.entry[s * pairs + pair][i > j] = slot[u];
       }
     }
     m.begin.push_back(static_cast<std::uint32_t>(m.column.size()));
-    for (std::size_t k = start; k < m.column.size(); ++k) slot[m.column[k]] = Simplices::none;
   }
   return m;
+}
+
+/// Σ w (∇λᵢ·∇λⱼ − (1 − l) (∇λᵢ·d)(∇λⱼ·d)) over the simplices, with d the direction of the axis' target and l the
+/// weight of its length.
+void set_values(Matrix& m, const Simplices& mesh, const Clump& clump, const std::vector<double>& weight,
+                const std::vector<Vec3d>& target, int axis) {
+  const int n = mesh.corners;
+  m.value.assign(m.column.size(), 0.0);
+  m.diagonal.assign(clump.vertex.size(), 0.0);
+  const std::array<std::uint32_t, 2>* entry = m.entry.data();
+  for (std::size_t s = 0; s < clump.simplex.size(); ++s) {
+    const Vec3d* gradient = mesh.gradient.data() + std::size_t(clump.simplex[s]) * n;
+    const Vec3d& t = target[s * clump.axes + axis];
+    const double squared = t.squaredNorm();
+    const double less = clump.length_weight.empty() || !(squared > 0) ? 0 : (1 - clump.length_weight[s]) / squared;
+    for (int i = 0; i < n; ++i) {
+      const Vec3d row = weight[s] * (gradient[i] - less * t.dot(gradient[i]) * t);
+      m.diagonal[clump.corner[s * n + i]] += row.dot(gradient[i]);
+      for (int j = i + 1; j < n; ++j, ++entry)
+        for (const double value = row.dot(gradient[j]); const std::uint32_t at : *entry) m.value[at] += value;
+    }
+  }
 }
 
 void multiply(const Matrix& m, const std::vector<double>& x, std::vector<double>& y) {
@@ -111,15 +135,18 @@ int warp(const Simplices& mesh, Clump& clump, const std::vector<Vec3d>& target, 
          const std::array<float, 4>& pin_barycentric, const WarpOptions& options) {
   const int n = mesh.corners, axes = clump.axes;
   const std::size_t vertices = clump.vertex.size();
-  const Matrix m = laplacian(mesh, clump, weight);
+  Matrix m = pattern_of(clump, n);
   std::vector<double> b(vertices), x(vertices);
   int iterations = 0;
   for (int axis = 0; axis < axes; ++axis) {
     if (!solve_axis[axis]) continue;
+    if (m.value.empty() || !clump.length_weight.empty()) set_values(m, mesh, clump, weight, target, axis);
     std::fill(b.begin(), b.end(), 0.0);
     for (std::size_t s = 0; s < clump.simplex.size(); ++s) {
       const Vec3d* gradient = mesh.gradient.data() + std::size_t(clump.simplex[s]) * n;
-      for (int i = 0; i < n; ++i) b[clump.corner[s * n + i]] += weight[s] * gradient[i].dot(target[s * axes + axis]);
+      const Vec3d pull =
+          weight[s] * (clump.length_weight.empty() ? 1 : clump.length_weight[s]) * target[s * axes + axis];
+      for (int i = 0; i < n; ++i) b[clump.corner[s * n + i]] += gradient[i].dot(pull);
     }
     for (std::size_t v = 0; v < vertices; ++v) x[v] = clump.coordinate[v * axes + axis];
     iterations += solve(m, b, x, options);

@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <numbers>
 
 namespace pith {
 namespace {
@@ -60,6 +61,8 @@ void check_input(const TriMesh& mesh, const std::string& name, const Tetrahedral
   };
   at_least(options.interior_edge, 0, "interior_edge");
   at_least(options.boundary_edge, 0, "boundary_edge");
+  at_least(options.core_edge, 0, "core_edge");
+  at_least(options.core_growth, 0.01, "core_growth");
   at_least(options.radius_edge, 1.1, "radius_edge");
   at_least(options.wrap_alpha, 1e-4, "wrap_alpha");
   at_least(options.wrap_offset, 1e-5, "wrap_offset");
@@ -117,10 +120,23 @@ std::string fill_clean(surface::Repaired ready, const std::string& name, const T
   settings.radius_edge = options.radius_edge;
   settings.time_limit = options.time_limit;
   settings.helper = options.helper;
-  if (const double tets = std::abs(signed_volume(ready.mesh)) / settings.max_volume; tets > most_tets)
+  if (options.core_edge > 0 && options.core_edge < edge)
+    for (const std::vector<Vec3d>& line : options.core)
+      for (std::size_t k = 1; k < line.size(); ++k) settings.core.push_back({line[k - 1], line[k]});
+  settings.core_edge = options.core_edge;
+  settings.core_growth = options.core_growth;
+  double tets = std::abs(signed_volume(ready.mesh)) / settings.max_volume;
+  if (tets > most_tets)
     throw InvalidInput(name,
                        "an interior edge of " + short_number(edge) + " mm would make " + short_number(tets) + " tets",
                        "ask for a longer interior edge");
+  for (const auto& [a, b] : settings.core) // ∫ 2πr dr over the volume of a regular tet, its edge growing with r
+    tets += (b - a).norm() * 6 * std::sqrt(2.0) * std::numbers::pi /
+            (options.core_growth * options.core_growth * options.core_edge);
+  if (tets > most_tets)
+    throw InvalidInput(
+        name, "a core edge of " + short_number(options.core_edge) + " mm would make " + short_number(tets) + " tets",
+        "ask for a longer core edge, or a faster growth");
 
   // First with good shapes; where that fails (or leaves a tet without volume) with the size bound alone, then plain.
   std::string failure;

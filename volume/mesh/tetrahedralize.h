@@ -17,6 +17,11 @@ struct TetrahedralizeOptions {
   Method method = Method::automatic;
   /// Target edge length inside, mm; 0: twelve times the mean edge of the surface, at most diagonal / 12.
   double interior_edge = 0;
+  /// Along these polylines, of two points or more each, tets shall have edges of about `core_edge` (mm; 0: as
+  /// elsewhere), and `core_growth` mm longer ones for each mm away from them, up to `interior_edge`. For axes around
+  /// which a texture turns.
+  std::vector<std::vector<Vec3d>> core{};
+  double core_edge = 0, core_growth = 0.4;
   /// Target edge length on the boundary, mm; 0: the surface as it is. Longer edges are split at their middle before
   /// meshing, so that the boundary comes out finer than the inside; no point of it moves.
   double boundary_edge = 0;

@@ -220,10 +220,15 @@ Outcome run(const TriMesh& surface, const Settings& settings, const Progress& pr
   problem.triangles = surface.triangle_count();
   problem.max_volume = settings.max_volume;
   problem.radius_edge = settings.radius_edge;
+  if (settings.max_volume > 0) problem.core_segments = settings.core.size();
+  problem.core_edge = settings.core_edge;
+  problem.core_growth = settings.core_growth;
   static_assert(sizeof(surface.corner[TriangleId(0u)]) == 12);
   write_whole(in, &problem, sizeof problem);
   write_whole(in, surface.position.data(), 24 * surface.vertex_count());
   write_whole(in, surface.corner.data(), 12 * surface.triangle_count());
+  static_assert(sizeof(settings.core[0]) == 48);
+  write_whole(in, settings.core.data(), 48 * problem.core_segments);
   if (::lseek(in, 0, SEEK_SET) != 0) fail("the surface cannot be handed over");
 
   Process process(helper, in, out, messages_of_helper);

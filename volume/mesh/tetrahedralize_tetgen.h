@@ -10,8 +10,10 @@
 namespace pith::tetgen {
 
 struct Settings {
-  double max_volume = 0;  ///< of a tet, mm³; 0: no bound
-  double radius_edge = 0; ///< 0: no refinement beyond what the surface needs
+  double max_volume = 0;                  ///< of a tet, mm³; 0: no bound
+  std::vector<std::array<Vec3d, 2>> core; ///< segments along which tets shall be finer; only under max_volume
+  double core_edge = 0, core_growth = 0;  ///< mm; mm per mm of distance
+  double radius_edge = 0;                 ///< 0: no refinement beyond what the surface needs
   double time_limit = 600;
   std::filesystem::path helper; ///< empty: `pith-tetgen` beside the running program
 };

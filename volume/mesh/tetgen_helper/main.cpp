@@ -4,10 +4,13 @@
 #include "protocol.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <fcntl.h>
+#include <limits>
 #include <new>
 #include <string>
 #include <sys/prctl.h>
@@ -63,13 +66,52 @@ void fill(tetgenio& in, const std::vector<double>& points, const std::vector<std
   }
 }
 
+/// Where tets shall be finer. TetGen asks a plain function about each tet, so what that needs has to be reachable
+/// from anywhere in this program.
+struct Core {
+  std::vector<std::array<double, 6>> segment;
+  double edge = 0, growth = 0;
+} core;
+
+double distance_to_core(const std::array<double, 3>& x) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const std::array<double, 6>& s : core.segment) {
+    double along = 0, squared = 0;
+    for (int k = 0; k < 3; ++k)
+      along += (x[k] - s[k]) * (s[k + 3] - s[k]), squared += (s[k + 3] - s[k]) * (s[k + 3] - s[k]);
+    along = squared > 0 ? std::clamp(along / squared, 0.0, 1.0) : 0;
+    double distance = 0;
+    for (int k = 0; k < 3; ++k) distance += std::pow(s[k] + along * (s[k + 3] - s[k]) - x[k], 2);
+    nearest = std::min(nearest, distance);
+  }
+  return std::sqrt(nearest);
+}
+
+/// Whether a tet is larger than one on which an edge of the length asked for there would be regular.
+bool too_large_for_core(double* a, double* b, double* c, double* d, double*, double) {
+  std::array<double, 3> center, u, v, w;
+  for (int k = 0; k < 3; ++k) {
+    center[k] = (a[k] + b[k] + c[k] + d[k]) / 4;
+    u[k] = b[k] - a[k], v[k] = c[k] - a[k], w[k] = d[k] - a[k];
+  }
+  const double volume = std::abs(u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
+                                 u[2] * (v[0] * w[1] - v[1] * w[0])) /
+                        6;
+  const double edge = core.edge + core.growth * distance_to_core(center);
+  return volume > edge * edge * edge / (6 * std::sqrt(2.0));
+}
+
 int run() {
   Problem problem;
   if (!read_whole(&problem, sizeof problem) || problem.mark != problem_mark) return bad_problem;
   std::vector<double> points(3 * problem.points);
   std::vector<std::uint32_t> triangles(3 * problem.triangles);
+  core.segment.resize(problem.core_segments);
+  core.edge = problem.core_edge;
+  core.growth = problem.core_growth;
   if (!read_whole(points.data(), points.size() * sizeof(double)) ||
-      !read_whole(triangles.data(), triangles.size() * sizeof(std::uint32_t)))
+      !read_whole(triangles.data(), triangles.size() * sizeof(std::uint32_t)) ||
+      !read_whole(core.segment.data(), core.segment.size() * sizeof core.segment[0]))
     return bad_problem;
 
   // TetGen reports on standard output: the result's way is moved aside first.
@@ -90,6 +132,7 @@ int run() {
   auto* in = new tetgenio;
   auto* out = new tetgenio;
   fill(*in, points, triangles);
+  if (!core.segment.empty()) in->tetunsuitable = too_large_for_core;
   try {
     tetrahedralize(&behavior, in, out);
   } catch (const std::bad_alloc&) {
