@@ -251,11 +251,13 @@ Solid solid_from(const JsonNode& node) {
   if (const auto along = node.find("along")) result.along = field_from(*along, "value");
   if (const auto around = node.find("around")) result.around = field_from(*around, "value");
   if (const auto options = node.find("depth_options")) {
-    options->object({"max_centers", "stroke_spacing", "extrema", "persistence"});
+    options->object({"max_centers", "stroke_spacing", "extrema", "overshoot", "persistence"});
     options->optional_whole("max_centers", result.depth_options.max_centers, 10, 1'000'000,
                             "leave it out for as many as are worth while");
     if (const auto extrema = options->find("extrema"))
       result.depth_options.remove_extrema = extrema->choice({"keep", "remove"}) == 1;
+    if (const auto overshoot = options->find("overshoot"))
+      result.depth_options.guard_overshoot = overshoot->choice({"clamp", "guard"}) == 1;
     options->optional_number("persistence", result.depth_options.persistence, range::fraction);
     options->optional_number("stroke_spacing", result.depth_options.stroke_spacing, range::positive_mm);
   }

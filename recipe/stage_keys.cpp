@@ -60,6 +60,7 @@ KeyMaker& add(KeyMaker& maker, const DepthOptions& options) {
   return maker.add(options.max_centers)
       .add(options.stroke_spacing)
       .add(options.remove_extrema)
+      .add(options.guard_overshoot)
       .add(options.persistence);
 }
 

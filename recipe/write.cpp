@@ -193,6 +193,7 @@ json json_from(const Solid& solid) {
   put(depth_options, "max_centers", solid.depth_options.max_centers, DepthOptions().max_centers);
   put(depth_options, "stroke_spacing", solid.depth_options.stroke_spacing, DepthOptions().stroke_spacing);
   if (!solid.depth_options.remove_extrema) depth_options["extrema"] = "keep";
+  if (solid.depth_options.guard_overshoot) depth_options["overshoot"] = "guard";
   put(depth_options, "persistence", solid.depth_options.persistence, DepthOptions().persistence);
   put_object(result, "depth_options", std::move(depth_options));
   put_list(result, "orientation", solid.orientation);

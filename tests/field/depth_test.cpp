@@ -1,4 +1,5 @@
 #include "volume/field/depth.h"
+#include "volume/field/depth_extrema.h"
 
 #include "tests/support/tet_grid.h"
 #include "volume/base/error.h"
@@ -152,6 +153,39 @@ TEST(Depth, VerticesOnAStrokeAreExact) {
 }
 
 // Thinning must change little, and thinned vertices keep their depths to the bit.
+// Beside a core that does not lie in the middle the thin plate rises beyond 1.
+TEST(Depth, GuardsHoldItInBounds) {
+  const Scene scene(tet_grid(16, 16, 16));
+  const std::vector<DepthConstraint> constraints = {skin_is_zero, stroke_of({{4, 8, 2}, {4, 8, 14}}, 1)};
+  const auto plateau = [&](const DepthField& field) {
+    const PerVertex<std::uint8_t> held = constrained_vertices(scene.mesh, scene.boundary, 0, constraints, "depth");
+    std::size_t count = 0;
+    for (const VertexId v : all_ids<VertexId>(scene.mesh.vertex_count())) {
+      EXPECT_TRUE(field.value[v] >= 0 && field.value[v] <= 1);
+      count += !held[v] && field.value[v] > 0.999f;
+    }
+    return count;
+  };
+  const DepthField paper = scene.depth(constraints), ours = scene.depth(constraints, {.guard_overshoot = true});
+  EXPECT_GT(plateau(paper), 100u);
+  EXPECT_EQ(plateau(ours), 0u);
+  EXPECT_GT(ours.centers, paper.centers);
+  for (const VertexId v : all_ids<VertexId>(scene.mesh.vertex_count())) {
+    const Vec3d& x = scene.mesh.position[v];
+    const bool on_stroke = x.x() == 4 && x.y() == 8 && x.z() >= 2 && x.z() <= 14;
+    EXPECT_TRUE(!on_stroke || ours.value[v] == 1) << x.transpose();
+  }
+  for (const TetId t : all_ids<TetId>(scene.mesh.tet_count())) { // towards the core, beside it
+    const Vec3d x = barycenter(scene.mesh, t);
+    const bool beside = x.x() > 6 && x.x() < 15 && std::abs(x.y() - 8) < 3 && x.z() > 3 && x.z() < 13;
+    EXPECT_TRUE(!beside || ours.gradient[t].x() < 0) << x.transpose();
+  }
+
+  // Where nothing overshoots there is nothing to guard.
+  const std::vector<DepthConstraint> middle = {skin_is_zero, stroke_of({{8, 8, 8}}, 1)};
+  EXPECT_EQ(scene.depth(middle, {.guard_overshoot = true}).value, scene.depth(middle).value);
+}
+
 TEST(Depth, ThinningChangesLittle) {
   const Scene scene(tet_ball(16, 10));
   const std::vector<DepthConstraint> constraints = {skin_is_zero, stroke_of({{0, 0, -4}, {0, 0, 4}}, 1)};

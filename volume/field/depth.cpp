@@ -9,6 +9,7 @@
 #include "volume/base/error.h"
 #include "volume/base/parallel.h"
 #include "volume/field/depth_flood.h"
+#include "volume/field/depth_overshoot.h"
 #include "volume/field/depth_places.h"
 #include "volume/field/farthest_points.h"
 #include "volume/field/radial_basis.h"
@@ -25,6 +26,9 @@ constexpr std::size_t all_from = 20'000;
 constexpr std::size_t few_centers = 500;
 /// Places closer to an earlier one than this fraction of the diagonal are left out when all are centres.
 constexpr double least_gap = 1e-4;
+/// Guards against overshoots: so many rounds, and so many guards in each.
+constexpr int most_rounds = 8;
+constexpr std::size_t guards_at_once = 16;
 
 struct Places {
   std::vector<Vec3d> point;
@@ -82,12 +86,34 @@ Places thinned(const TetMesh& mesh, const DepthPlaces& places, std::size_t most)
   return result;
 }
 
-RadialBasis basis_of(const TetMesh& mesh, const DepthPlaces& places, std::size_t most) {
+/// The centres of the radial basis and their depths.
+Places centers_of(const TetMesh& mesh, const DepthPlaces& places, std::size_t most) {
   std::size_t count = places.sample.size();
   for (const float prescribed : places.prescribed) count += !std::isnan(prescribed);
   if (most == 0) most = count < all_from ? few_centers : count;
-  const Places centers = most < count ? thinned(mesh, places, most) : all_of(mesh, places);
-  return RadialBasis::fit(centers.point, centers.value, {.accuracy = 3e-7});
+  return most < count ? thinned(mesh, places, most) : all_of(mesh, places);
+}
+
+RadialBasis fit(const Places& centers) { return RadialBasis::fit(centers.point, centers.value, {.accuracy = 3e-7}); }
+
+/// Every vertex' depth by the interpolant, where it is prescribed that.
+PerVertex<float> interpolated(const TetMesh& mesh, const DepthGraph& graph, const DepthPlaces& places,
+                              const RadialBasis& basis) {
+  PerVertex<float> depth(mesh.vertex_count(), 0.0f);
+  parallel_for(graph.vertex.size(), 256, [&](std::size_t i) {
+    const VertexId v = graph.vertex[i];
+    const float prescribed = places.prescribed[v];
+    depth[v] = std::isnan(prescribed) ? static_cast<float>(basis.value(mesh.position[v])) : prescribed;
+  });
+  return depth;
+}
+
+std::vector<DepthPlace> constraints_of(const TetMesh& mesh, const DepthPlaces& places) {
+  std::vector<DepthPlace> all;
+  for (std::size_t i = 0; i < places.sample.size(); ++i) all.push_back({places.sample[i], places.sample_value[i]});
+  for (const VertexId v : all_ids<VertexId>(mesh.vertex_count()))
+    if (!std::isnan(places.prescribed[v])) all.push_back({mesh.position[v], places.prescribed[v]});
+  return all;
 }
 
 /// The gradient of the linear function through a tet's corners.
@@ -134,29 +160,33 @@ DepthField depth_field(const TetMesh& mesh, const Boundary& boundary, std::int32
     throw InvalidInput(where, "stroke_spacing is " + std::to_string(options.stroke_spacing),
                        "give millimetres, or 0 for a fortieth of the stroke");
   const DepthPlaces places = depth_places(mesh, boundary, region, constraints, where, options);
-  const RadialBasis basis = basis_of(mesh, places, static_cast<std::size_t>(options.max_centers));
+  const PerVertex<std::uint8_t> held = held_vertices(mesh, region, places);
+  const DepthGraph graph = depth_graph(mesh, region);
+
+  Places centers = centers_of(mesh, places, static_cast<std::size_t>(options.max_centers));
+  RadialBasis basis = fit(centers);
+  PerVertex<float> depth = interpolated(mesh, graph, places, basis);
+  if (options.guard_overshoot) {
+    const std::vector<DepthPlace> constraints = constraints_of(mesh, places);
+    const int rounds = centers.point.size() < all_from ? most_rounds : 2; // each is a fit
+    for (int round = 0; round < rounds; ++round) {
+      const auto guards = guards_of(graph, depth, held, constraints, options.persistence, guards_at_once);
+      if (guards.empty()) break;
+      for (const DepthPlace& guard : guards) centers.add(guard.point, guard.value);
+      basis = fit(centers);
+      depth = interpolated(mesh, graph, places, basis);
+    }
+  }
 
   DepthField field;
   field.centers = basis.center_count();
   field.value.assign(mesh.vertex_count(), 0.0f);
+  for (const VertexId v : graph.vertex) field.value[v] = std::clamp(depth[v], 0.0f, 1.0f);
   field.gradient.assign(mesh.tet_count(), Vec3d::Zero());
-  std::vector<std::uint8_t> used(mesh.vertex_count(), 0);
-  for (const TetId t : all_ids<TetId>(mesh.tet_count()))
-    if (mesh.region[t] == region)
-      for (const VertexId v : mesh.corner[t]) used[v] = 1;
-  parallel_for(mesh.vertex_count(), 256, [&](std::size_t i) {
-    const VertexId v(i);
-    if (!used[i]) return;
-    const float prescribed = places.prescribed[v];
-    field.value[v] =
-        std::isnan(prescribed) ? static_cast<float>(std::clamp(basis.value(mesh.position[v]), 0.0, 1.0)) : prescribed;
-  });
   parallel_for(mesh.tet_count(), 256, [&](std::size_t i) {
     const TetId t(i);
     if (mesh.region[t] == region) field.gradient[t] = basis.gradient(barycenter(mesh, t));
   });
-  const PerVertex<std::uint8_t> held = held_vertices(mesh, region, places);
-  const DepthGraph graph = depth_graph(mesh, region);
   for (const bool maxima : {false, true})
     field.extrema += extrema_of(graph, field.value, held, maxima, options.persistence).size();
   if (field.extrema > 0 && options.remove_extrema)

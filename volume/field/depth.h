@@ -39,7 +39,11 @@ struct DepthOptions {
   /// of a maximum lowered to where it joins what is higher or held. Levelled places rise (fall) on by less than
   /// `persistence`, away from there. The field keeps its bits everywhere else. False: the paper's field.
   bool remove_extrema = true;
-  /// Extrema that persist by less are let be.
+  /// Where the thin plate overshoots [0, 1], as it does beside a core that does not lie in the middle, clamping
+  /// leaves a plateau: a core as wide as the overshoot. True: further places there hold it in bounds, with depths
+  /// that are linear between the core and what lies around it. Changes the field in the whole region.
+  bool guard_overshoot = false;
+  /// Extrema and overshoots that persist by less are let be.
   double persistence = 0.01;
 };
 
@@ -48,7 +52,7 @@ struct DepthField {
   /// 1/mm, in other regions 0: of the smooth interpolant at the tet's barycentre; where extrema were levelled, of the
   /// linear function through the corners, but at least 0.024 over the region's extent.
   PerTet<Vec3d> gradient;
-  std::size_t centers = 0; ///< that the radial basis really has
+  std::size_t centers = 0; ///< that the radial basis really has, guards among them
   std::size_t extrema = 0; ///< of the thin plate, that no constraint asks for
 };
 

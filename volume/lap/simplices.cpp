@@ -22,11 +22,9 @@ Simplices simplices_of(const TetMesh& mesh, std::int32_t region) {
     s.center[i] = 0.25 * (mesh.position[c[0]] + mesh.position[c[1]] + mesh.position[c[2]] + mesh.position[c[3]]);
     if (mesh.region[t] != region) return;
     s.measure[i] = signed_volume(mesh, t);
+    const std::array<Vec3d, 4> gradient = barycentric_gradients(mesh, t);
     for (int k = 0; k < 4; ++k) {
-      const auto& f = facet_corners[k];
-      const Vec3d& a = mesh.position[c[f[0]]];
-      const Vec3d inward = (mesh.position[c[f[2]]] - a).cross(mesh.position[c[f[1]]] - a);
-      s.gradient[4 * i + k] = inward / inward.dot(mesh.position[c[k]] - a);
+      s.gradient[4 * i + k] = gradient[k];
       const TetId across = mesh.neighbor[t][k];
       if (across.exists() && mesh.region[across] == region) s.neighbor[4 * i + k] = across;
     }

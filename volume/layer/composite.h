@@ -11,9 +11,6 @@ namespace pith {
 /// layer has nothing there.
 std::span<const Lookup> lookups_of(const Layer& layer, std::uint32_t simplex);
 
-/// Gradients (1/mm) of a tet's barycentric coordinates.
-std::array<Vec3d, 4> barycentric_gradients(const TetMesh& mesh, TetId tet);
-
 /// A place on one simplex: a tet (4 corners) or a boundary facet (3).
 struct SimplexPoint {
   std::array<float, 4> barycentric{}; ///< the fourth is 0 on a facet

@@ -76,6 +76,19 @@ void connect(TetMesh& mesh) {
   });
 }
 
+// Inward facet normals over three times the volume.
+std::array<Vec3d, 4> barycentric_gradients(const TetMesh& mesh, TetId tet) {
+  std::array<Vec3d, 4> gradient;
+  const auto& c = mesh.corner[tet];
+  for (int i = 0; i < 4; ++i) {
+    const auto& f = facet_corners[i];
+    const Vec3d& a = mesh.position[c[f[0]]];
+    const Vec3d inward = (mesh.position[c[f[2]]] - a).cross(mesh.position[c[f[1]]] - a);
+    gradient[i] = inward / inward.dot(mesh.position[c[i]] - a);
+  }
+  return gradient;
+}
+
 double signed_volume(const TetMesh& mesh, TetId tet) {
   const auto& corner = mesh.corner[tet];
   const Vec3d& origin = mesh.position[corner[0]];

@@ -24,6 +24,7 @@ struct TetMesh {
 void connect(TetMesh& mesh);
 
 double signed_volume(const TetMesh& mesh, TetId tet);
+std::array<Vec3d, 4> barycentric_gradients(const TetMesh& mesh, TetId tet); ///< 1/mm; not finite in a flat tet
 Vec3d barycenter(const TetMesh& mesh, TetId tet);
 Box bounds_of(const TetMesh& mesh);
 
