@@ -92,6 +92,17 @@ void check_output(const std::filesystem::path& path, std::initializer_list<const
     throw IoFailure(path.string(), "cannot be written: no permission in its folder; choose another");
 }
 
+void add_displacement_options(CLI::App& app, DisplaceOptions& options) {
+  app.add_option("--displacement", options.scale,
+                 "where the skin's material has a relief: factor on its height; 0: the smooth skin")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--displacement-edge", options.max_edge,
+                 "longest edge of the skin's triangles then, mm; 0: longest extent / 400")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+}
+
 std::string nearest_name(const std::string& word, const std::vector<std::string>& names) {
   std::string best;
   std::size_t least = 1 + std::max<std::size_t>(1, word.size() / 2); // a word of which more is wrong is another one

@@ -1,6 +1,7 @@
 #pragma once
 // What all verbs share: common options, the object that --json prints, progress, and Ctrl-C.
 #include "volume/base/parallel.h"
+#include "volume/cut/displace.h"
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
@@ -97,6 +98,9 @@ Verb shape_verb(CLI::App& program);
 /// Errors early, before long work: IoFailure when the folder of an output file does not exist or is not writable;
 /// InvalidInput when its extension is none of `extensions` (empty: any).
 void check_output(const std::filesystem::path& path, std::initializer_list<const char*> extensions);
+
+/// `--displacement` and `--displacement-edge`.
+void add_displacement_options(CLI::App& app, DisplaceOptions& options);
 
 /// The name among `names` that is spelt most like `word`; empty where none is near.
 std::string nearest_name(const std::string& word, const std::vector<std::string>& names);

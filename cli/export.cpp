@@ -13,6 +13,7 @@ namespace {
 struct ExportOptions {
   std::filesystem::path model, output;
   double max_edge = 0;
+  DisplaceOptions displacement;
   VdbOptions vdb;
 };
 
@@ -41,7 +42,13 @@ void run(const ExportOptions& options, const Session& session) {
                             pieces.piece.size(), written.vertices));
   } else {
     const ColoredSurface surface =
-        colored_surface(root, pieces, {.max_edge = options.max_edge}, session.progress("export"));
+        colored_surface(root, pieces, {.max_edge = options.max_edge, .displacement = options.displacement},
+                        session.progress("export"));
+    if (surface.turned > 0)
+      session.say(
+          fmt::format("note: {} triangles face inwards, as the relief is higher there than the skin is round; "
+                      "give less --displacement",
+                      surface.turned));
     session.stop_if_asked();
     const SurfaceCounts written = write_surface(options.output, surface, name.empty() ? "pith" : name);
     object["triangles"] = written.triangles;
@@ -64,6 +71,7 @@ Verb export_verb(CLI::App& program) {
   app->add_option("--max-edge", options->max_edge, "surfaces: subdivide until no edge is longer, mm; 0: as they are")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  add_displacement_options(*app, options->displacement);
   app->add_option("--voxel", options->vdb.voxel, "vdb: edge of a voxel, mm; 0: longest extent / 256")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

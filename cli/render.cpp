@@ -22,6 +22,7 @@ struct RenderVerbOptions {
   int samples = 64;
   double time = 0, exposure = 0;
   bool transparent = false;
+  DisplaceOptions displacement;
 };
 
 std::array<int, 2> size_of(const std::string& text) {
@@ -106,6 +107,7 @@ void run(const CLI::App& app, const RenderVerbOptions& options, const Session& s
     scene_file.view = parse_recipe(file.recipe, options.model.filename().string() + " (recipe)").view;
   const Pieces pieces = std::move(file.pieces);
   const Root root(std::move(file.model));
+  scene_file.scene.displacement = options.displacement;
   const Scene scene(root, pieces, scene_file.scene);
   FramingOptions framing{.direction = scene_file.direction, .aspect = static_cast<double>(width) / height};
   if (scene_file.vertical_angle) framing.vertical_angle = *scene_file.vertical_angle;
@@ -183,6 +185,7 @@ Verb render_verb(CLI::App& program) {
                   "x,y,z: look from there, framed to show all (default: where the sections are seen best)");
   app->add_option("--exposure", options->exposure, "stops")->capture_default_str();
   app->add_flag("--transparent", options->transparent, "no background: alpha");
+  add_displacement_options(*app, options->displacement);
   return {app, [app, options](const Session& session) { run(*app, *options, session); }};
 }
 

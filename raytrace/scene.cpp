@@ -29,7 +29,7 @@ struct Candidate {
 struct Crossing {
   std::uint32_t surface, triangle;
   double distance, u, v;
-  Vec3d rest;
+  Vec3d place, rest; ///< in rest space, where its relief stands and where its material lies
 };
 
 /// Weights u, v, 1 − u − v brought into [0, 1].
@@ -140,8 +140,8 @@ Scene::Scene(const Root& root, const Pieces& pieces, const SceneOptions& options
   parts->root = &root;
   parts->options = options;
   parts->options.up.normalize();
-  parts->surface = visible_surfaces(root, pieces);
   parts->skin_normal = facet_corner_normals(root.model().mesh, root.model().boundary, options.crease);
+  parts->surface = visible_surfaces(root, pieces, parts->skin_normal, options.displacement);
   double lowest = std::numeric_limits<double>::infinity();
   for (const VisibleSurface& surface : parts->surface) {
     for (const auto& triangle : surface.triangle)
@@ -315,8 +315,13 @@ Crossing Scene::Parts::crossing_of(const SceneRay& ray, const Candidate& candida
     v = direction.dot(q) / determinant;
   }
   clamp_to_triangle(u, v); // single precision may have found it a hair outside
-  const Vec3d rest = a + u * ab + v * ac;
-  return {candidate.surface, candidate.triangle, (rest - origin).dot(direction), u, v, rest};
+  const Vec3d place = a + u * ab + v * ac;
+  Vec3d rest = place;
+  if (!from.rest.empty()) {
+    const Vec3d& first = from.rest[triangle.corner[0]];
+    rest = first + u * (from.rest[triangle.corner[1]] - first) + v * (from.rest[triangle.corner[2]] - first);
+  }
+  return {candidate.surface, candidate.triangle, (place - origin).dot(direction), u, v, place, rest};
 }
 
 /// Geometric and smooth normals, and the start of secondary rays after Hanika, "Hacking the Shadow Terminator", Ray
@@ -329,14 +334,14 @@ Hit Scene::Parts::hit_of(const Crossing& crossing) const {
   hit.triangle = crossing.triangle;
   hit.distance = crossing.distance;
   hit.rest = crossing.rest;
-  hit.position = from.placement(hit.rest);
+  hit.position = from.placement(crossing.place);
   hit.tag = triangle.tag;
   hit.root = triangle.root;
 
-  // The skin's normals belong to the root's facets, so that cuts do not change them.
+  // The skin's normals belong to the root's facets, so that cuts do not change them; those of its relief to itself.
   std::array<Vec3d, 3> corner;
   const std::array<Vec3f, 3>* skin = nullptr;
-  if (hit.tag.is_skin()) {
+  if (hit.tag.is_skin() && from.rest.empty()) {
     const Model& model = root->model();
     const auto& facet = model.boundary.corner[hit.tag.facet()];
     for (int i = 0; i < 3; ++i) corner[i] = model.mesh.position[facet[i]];
@@ -347,7 +352,7 @@ Hit Scene::Parts::hit_of(const Crossing& crossing) const {
   const Vec3d ab = corner[1] - corner[0], ac = corner[2] - corner[0], area = ab.cross(ac);
   double u = crossing.u, v = crossing.v;
   if (skin && area.squaredNorm() > 0) {
-    const Vec3d s = hit.rest - corner[0];
+    const Vec3d s = crossing.place - corner[0];
     u = s.cross(ac).dot(area) / area.squaredNorm();
     v = ab.cross(s).dot(area) / area.squaredNorm();
     clamp_to_triangle(u, v);
@@ -358,7 +363,7 @@ Hit Scene::Parts::hit_of(const Crossing& crossing) const {
     const Vec3f& single = skin ? (*skin)[i] : from.normal[from.normal_row[crossing.triangle][i]];
     const Vec3d normal = single.cast<double>();
     smooth += weight[i] * normal;
-    lift -= weight[i] * std::min(0.0, (hit.rest - corner[i]).dot(normal)) * normal;
+    lift -= weight[i] * std::min(0.0, (crossing.place - corner[i]).dot(normal)) * normal;
   }
   const double length = smooth.norm(), size = area.norm();
   Vec3d geometric = Vec3d::UnitY();
@@ -370,7 +375,7 @@ Hit Scene::Parts::hit_of(const Crossing& crossing) const {
   smooth = length > 1e-6 ? Vec3d(smooth / length) : geometric;
   hit.normal = from.placement.rotation * geometric;
   hit.smooth = from.placement.rotation * smooth;
-  hit.lifted = from.placement(hit.rest + lift) + clearance * hit.normal;
+  hit.lifted = from.placement(crossing.place + lift) + clearance * hit.normal;
   return hit;
 }
 

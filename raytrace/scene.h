@@ -1,6 +1,6 @@
 #pragma once
 // What rays hit: the surfaces of all pieces where they stand, and a ground plane. Colour comes from material_at.
-#include "volume/cut/piece.h"
+#include "volume/cut/displace.h"
 #include "volume/layer/model.h"
 
 #include <cmath>
@@ -28,6 +28,7 @@ struct SceneOptions {
   double crease = 0.8;            ///< radians: skin facets that meet at a larger angle keep a sharp edge
   Vec3d uncovered{0.5, 0.5, 0.5}; ///< colour where the material's coverage is below 1
   GroundOptions ground;
+  DisplaceOptions displacement{}; ///< of the skin by the relief of its material (relief.h), where that has one
 };
 
 /// A half line, world space, mm. `direction` has unit length.

@@ -1,6 +1,8 @@
 #include "raytrace/scene_surface.h"
 
 #include "volume/base/parallel.h"
+#include "volume/layer/relief.h"
+#include "volume/mesh/facet_tree.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -85,9 +87,52 @@ void add_section_normals(const Pieces& pieces, const PieceSurface& whole, Visibl
   }
 }
 
+/// The surface with its skin displaced.
+void add_relief(const Relief& relief, const Model& model, const PerFacet<std::array<Vec3f, 3>>& skin_normal,
+                const DisplaceOptions& options, VisibleSurface& surface) {
+  std::vector<SurfaceFace> face;
+  face.reserve(surface.triangle.size());
+  for (std::size_t t = 0; t < surface.triangle.size(); ++t) {
+    const PieceSurface::Triangle& triangle = surface.triangle[t];
+    SurfaceFace& f = face.emplace_back(SurfaceFace{triangle.corner, {}, triangle.root, triangle.tag});
+    for (int i = 0; i < 3; ++i) {
+      if (!triangle.tag.is_skin()) {
+        f.normal[i] = surface.normal[surface.normal_row[t][i]];
+        continue;
+      }
+      const auto& corner = model.boundary.corner[triangle.tag.facet()];
+      const std::array<Vec3f, 3>& normal = skin_normal[triangle.tag.facet()];
+      const NearestFacet at = closest_point(
+          {model.mesh.position[corner[0]], model.mesh.position[corner[1]], model.mesh.position[corner[2]]},
+          surface.position[triangle.corner[i]]);
+      Vec3d sum = Vec3d::Zero();
+      for (int k = 0; k < 3; ++k) sum += at.barycentric[k] * normal[k].cast<double>();
+      f.normal[i] = sum.normalized().cast<float>();
+    }
+  }
+  const auto height = [&](const Vec3d& x, FacetId facet, TetId tet) {
+    return relief.at({.position = x, .region = model.mesh.region[tet], .facet = facet, .hint = tet});
+  };
+  DisplacedSurface displaced =
+      displace(std::move(surface.position), std::move(face), model.mesh, model.boundary, height, options);
+  surface.position = std::move(displaced.position);
+  surface.rest = std::move(displaced.rest);
+  surface.triangle.clear();
+  surface.normal.clear();
+  surface.normal_row.clear();
+  for (const SurfaceFace& f : displaced.face) {
+    const auto row = static_cast<std::uint32_t>(surface.normal.size());
+    surface.triangle.push_back({f.point, f.root, f.tag});
+    surface.normal_row.push_back({row, row + 1, row + 2});
+    surface.normal.insert(surface.normal.end(), f.normal.begin(), f.normal.end());
+  }
+}
+
 } // namespace
 
-std::vector<VisibleSurface> visible_surfaces(const Root& root, const Pieces& pieces) {
+std::vector<VisibleSurface> visible_surfaces(const Root& root, const Pieces& pieces,
+                                             const PerFacet<std::array<Vec3f, 3>>& skin_normal,
+                                             const DisplaceOptions& displacement) {
   const TetMesh& mesh = root.model().mesh;
   const std::size_t count = pieces.piece.size();
   std::vector<PieceSurface> whole(count);
@@ -115,6 +160,7 @@ std::vector<VisibleSurface> visible_surfaces(const Root& root, const Pieces& pie
       hidden[faces[i + 1].piece][faces[i + 1].triangle] = 1;
     }
 
+  const Relief relief(root);
   std::vector<VisibleSurface> result(count);
   parallel_for(count, 1, [&](std::size_t p) {
     VisibleSurface& surface = result[p];
@@ -124,6 +170,8 @@ std::vector<VisibleSurface> visible_surfaces(const Root& root, const Pieces& pie
     for (std::size_t t = 0; t < whole[p].triangle.size(); ++t)
       if (!hidden[p][t]) surface.triangle.push_back(whole[p].triangle[t]);
     add_section_normals(pieces, whole[p], surface);
+    if (relief.exists() && displacement.scale > 0 && !surface.triangle.empty())
+      add_relief(relief, root.model(), skin_normal, displacement, surface);
   });
   return result;
 }

@@ -63,6 +63,38 @@ TEST(ColoredSurface, EachPieceIsClosedWithItsVolume) {
   }
 }
 
+TEST(ColoredSurface, ReliefStandsOnTheSkinAndSectionsStay) {
+  Model model = ramp_model(false);
+  Exemplar& ramp = model.layer[0].exemplar[0];
+  ramp.channel.push_back({.name = "height", .semantic = Semantic::height, .components = 1, .srgb = false, .high = 1});
+  LargeArray<std::uint8_t> texel;
+  for (std::size_t t = 0; t < ramp.texel_count(); ++t) {
+    for (int c = 0; c < 3; ++c) texel.push_back(ramp.texel[3 * t + c]);
+    texel.push_back(ramp.texel[3 * t]); // as it is red: x / 25 + ½
+  }
+  ramp.texel = std::move(texel);
+  const Pieces pieces = cut_pieces(model);
+  const Root root(std::move(model));
+  const ColoredSurface plain = colored_surface(root, pieces, {.displacement = {.scale = 0}}),
+                       relief = colored_surface(root, pieces, {.displacement = {.max_edge = 1}});
+  expect_closed(relief);
+  double before = 0, after = 0;
+  for (std::uint32_t p = 0; p < pieces.piece.size(); ++p) {
+    before += volume_of(plain, p);
+    after += volume_of(relief, p);
+  }
+  EXPECT_GT(after, 1.12 * before); // half a millimetre on a radius of ten
+  EXPECT_LT(after, 1.18 * before);
+  for (const auto& part : relief.part)
+    for (std::uint32_t v = part.vertex_begin; v < part.vertex_end; ++v) {
+      const Vec3d at = pieces.piece[part.piece].placement.inverse(point_of(relief, v));
+      const Vec3d color = relief.vertex[v].color.cast<double>();
+      const Vec3d rest = (color - Vec3d::Constant(0.5)) * 25; // what the colour says
+      const double height = part.cut.exists() ? 0.0 : std::max(0.0, color.x() - 2 / 255.0);
+      ASSERT_LE((at - rest).norm(), height + 0.25) << at.transpose();
+    }
+}
+
 TEST(ColoredSurface, PartsRunThroughPiecesSkinFirst) {
   const Scene scene(false);
   const ColoredSurface surface = colored_surface(scene.root, scene.pieces);

@@ -5,16 +5,22 @@
 
 namespace pith::testing {
 
-/// The eight texels' colours in order x, y, z; coordinates run from 0 to 1 over the mesh's bounds.
-inline Root root_of(TetMesh mesh, const std::array<Vec3d, 8>& color) {
+/// The eight texels' colours in order x, y, z; coordinates run from 0 to 1 over the mesh's bounds. `height`: eight
+/// heights of 0 to 2.55 mm, or none.
+inline Root root_of(TetMesh mesh, const std::array<Vec3d, 8>& color, std::span<const double> height = {}) {
   Model model;
   model.name = "test";
   Exemplar exemplar;
   exemplar.name = "corners";
   exemplar.size = {2, 2, 2, 1};
   exemplar.channel = {Channel{.srgb = false}};
-  for (const Vec3d& c : color)
-    for (int k = 0; k < 3; ++k) exemplar.texel.push_back(static_cast<std::uint8_t>(std::lround(255 * c[k])));
+  if (!height.empty())
+    exemplar.channel.push_back(
+        {.name = "height", .semantic = Semantic::height, .components = 1, .srgb = false, .low = 0, .high = 2.55f});
+  for (std::size_t i = 0; i < color.size(); ++i) {
+    for (int k = 0; k < 3; ++k) exemplar.texel.push_back(static_cast<std::uint8_t>(std::lround(255 * color[i][k])));
+    if (!height.empty()) exemplar.texel.push_back(static_cast<std::uint8_t>(std::lround(100 * height[i])));
+  }
   Layer layer;
   layer.name = "body";
   layer.exemplar.push_back(exemplar);

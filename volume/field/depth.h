@@ -40,8 +40,8 @@ struct DepthOptions {
   /// `persistence`, away from there. The field keeps its bits everywhere else. False: the paper's field.
   bool remove_extrema = true;
   /// Where the thin plate overshoots [0, 1], as it does beside a core that does not lie in the middle, clamping
-  /// leaves a plateau: a core as wide as the overshoot. True: further places there hold it in bounds, with depths
-  /// that are linear between the core and what lies around it. Changes the field in the whole region.
+  /// leaves a plateau: a core as wide as the overshoot. True: further places there hold it in bounds. Changes the
+  /// field in the whole region.
   bool guard_overshoot = false;
   /// Extrema and overshoots that persist by less are let be.
   double persistence = 0.01;

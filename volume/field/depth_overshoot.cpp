@@ -35,7 +35,7 @@ std::vector<DepthPlace> guards_of(const DepthGraph& graph, const PerVertex<float
     if (!(to_bound > 0) || !std::isfinite(to_other)) continue;
     const bool apart = std::all_of(guards.begin(), guards.end(),
                                    [&](const DepthPlace& g) { return (g.point - x).norm() > 0.5 * to_bound; });
-    if (apart) guards.push_back({x, (bound * to_other + other * to_bound) / (to_bound + to_other)});
+    if (apart) guards.push_back({x, bound + 0.5 * (other - bound) * to_bound / (to_bound + to_other)});
   }
   return guards;
 }

@@ -15,7 +15,7 @@ struct DepthPlace {
 /// Further places that hold an interpolant in bounds where it overshoots [0, 1], as it does beside a core that does
 /// not lie in the middle (clamping it would leave a plateau: a core as wide as the overshoot). At the worst vertices,
 /// each apart from the others by half its distance from the places of the depth that is overshot, and at most `most`
-/// of them; their depth is linear in the distances between those places and the nearest other ones. Held vertices and
+/// of them; their depth falls half as fast from there to the nearest other ones as a linear one. Held vertices and
 /// overshoots below `persistence` do not count. `place`: the constraints, with two depths among them.
 /// Cost: O(vertices log vertices + most · places).
 std::vector<DepthPlace> guards_of(const DepthGraph& graph, const PerVertex<float>& interpolated,

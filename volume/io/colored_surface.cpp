@@ -1,5 +1,5 @@
-#include "volume/io/subdivide.h"
 #include "volume/io/surface_export.h"
+#include "volume/layer/relief.h"
 
 #include "volume/base/error.h"
 
@@ -51,7 +51,7 @@ private:
   PerVertex<Vec3d> vertex_;
 };
 
-/// The faces of one piece, skin first, then sections by cut, with their normals.
+/// The faces of one piece with their normals.
 std::vector<SurfaceFace> faces_of(const PieceSurface& surface, const Pieces& pieces, const TetMesh& mesh,
                                   const SkinNormals& skin) {
   // On which side of each cut the piece lies: its section faces outwards against or along the cut's field.
@@ -84,11 +84,14 @@ std::vector<SurfaceFace> faces_of(const PieceSurface& surface, const Pieces& pie
         f.normal[i] = -f.normal[i];
     }
   }
-  // Skin has code ≥ 0; sections have −2, −3 ... in the order of the cuts.
+  return face;
+}
+
+/// Skin has code ≥ 0; sections have −2, −3 ... in the order of the cuts.
+void sort_by_part(std::vector<SurfaceFace>& face) {
   std::stable_sort(face.begin(), face.end(), [](const SurfaceFace& a, const SurfaceFace& b) {
     return std::min(a.tag.code, 0) > std::min(b.tag.code, 0);
   });
-  return face;
 }
 
 /// Corners that are one vertex: the same point, region and normal within a part.
@@ -107,23 +110,37 @@ struct CornerKey {
 class SurfaceBuilder {
 public:
   SurfaceBuilder(const Root& root, const Pieces& pieces, const SurfaceOptions& options)
-      : root_(root), pieces_(pieces), options_(options), skin_(root.model().mesh, root.model().boundary) {}
+      : root_(root), pieces_(pieces), options_(options), relief_(root),
+        skin_(root.model().mesh, root.model().boundary) {}
 
   void add_piece(std::uint32_t p) {
     const TetMesh& mesh = root_.model().mesh;
     PieceSurface surface = surface_of(pieces_, p, mesh, root_.model().boundary);
     std::vector<SurfaceFace> face = faces_of(surface, pieces_, mesh, skin_);
-    std::vector<Vec3d> position = std::move(surface.position);
+    std::vector<Vec3d> rest = std::move(surface.position);
     if (options_.max_edge > 0) {
       const std::size_t left = options_.max_triangles - std::min(options_.max_triangles, result_.triangle.size());
-      subdivide(position, face, options_.max_edge, left);
+      subdivide(rest, face, options_.max_edge, left);
     }
+    std::vector<Vec3d> position = rest;
+    if (relief_.exists() && options_.displacement.scale > 0) {
+      const auto height = [&](const Vec3d& x, FacetId facet, TetId tet) {
+        return relief_.at({.position = x, .region = mesh.region[tet], .facet = facet, .hint = tet});
+      };
+      DisplacedSurface displaced =
+          displace(std::move(rest), std::move(face), mesh, root_.model().boundary, height, options_.displacement);
+      position = std::move(displaced.position);
+      rest = std::move(displaced.rest);
+      face = std::move(displaced.face);
+      result_.turned += displaced.turned;
+    }
+    sort_by_part(face);
     const auto first_point = static_cast<std::uint32_t>(result_.position.size());
     for (const Vec3d& x : position) result_.position.push_back(pieces_.piece[p].placement(x));
     for (std::size_t begin = 0, end = 0; begin < face.size(); begin = end) {
       const auto kind = [&](std::size_t f) { return std::min(face[f].tag.code, 0); };
       while (end < face.size() && kind(end) == kind(begin)) ++end;
-      add_part(p, first_point, position, {face.data() + begin, face.data() + end});
+      add_part(p, first_point, rest, {face.data() + begin, face.data() + end});
     }
   }
 
@@ -143,7 +160,7 @@ public:
   }
 
 private:
-  void add_part(std::uint32_t p, std::uint32_t first_point, const std::vector<Vec3d>& position,
+  void add_part(std::uint32_t p, std::uint32_t first_point, const std::vector<Vec3d>& rest,
                 std::span<const SurfaceFace> face) {
     std::vector<CornerKey> key;
     key.reserve(3 * face.size());
@@ -168,7 +185,7 @@ private:
         const Vec3d normal = f.normal[key[k].corner % 3].cast<double>();
         result_.vertex.push_back({first_point + key[k].point, (rotation * normal).cast<float>(), Vec3f(0, 0, 0)});
         point_.push_back(
-            {.position = position[key[k].point], .region = key[k].region, .facet = f.tag.facet(), .hint = f.root});
+            {.position = rest[key[k].point], .region = key[k].region, .facet = f.tag.facet(), .hint = f.root});
       }
       result_.triangle[triangle_begin + key[k].corner / 3][key[k].corner % 3] =
           static_cast<std::uint32_t>(result_.vertex.size() - 1);
@@ -181,6 +198,7 @@ private:
   const Root& root_;
   const Pieces& pieces_;
   const SurfaceOptions& options_;
+  Relief relief_;
   SkinNormals skin_;
   ColoredSurface result_;
   std::vector<MaterialPoint> point_; // parallel to result_.vertex

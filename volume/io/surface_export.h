@@ -2,7 +2,7 @@
 // The coloured surface of pieces, skin and sections, and the files that carry it: PLY, OBJ, STL, GLB. And the tets
 // themselves with their colours: VTU.
 #include "volume/base/parallel.h"
-#include "volume/cut/piece.h"
+#include "volume/cut/displace.h"
 #include "volume/layer/model.h"
 
 #include <filesystem>
@@ -15,6 +15,8 @@ struct SurfaceOptions {
   double max_edge = 0;
   /// Guard: InvalidInput when subdivision would make more triangles than this.
   std::size_t max_triangles = 50'000'000;
+  /// Of the skin by the relief of its material (relief.h), where that has one; its own guard counts per piece.
+  DisplaceOptions displacement{};
 };
 
 /// Vertices are split where a smooth surface ends: between skin and section, between sections of different cuts,
@@ -37,9 +39,10 @@ struct ColoredSurface {
     std::uint32_t vertex_begin, vertex_end;
   };
   std::vector<Part> part;
+  std::size_t turned = 0; ///< triangles that displacement turned inwards (DisplacedSurface::turned)
 };
 
-/// Colours are material_at the rest position of each vertex, on the side of the root tet behind it; skin triangles
+/// Colours are material_at the rest position, from before displacement, of each vertex, on the side of the root tet behind it; skin triangles
 /// see the skin layers. Normals: the root's smooth skin, the cut's field on sections. Cost: one material_at per
 /// vertex, in parallel.
 ColoredSurface colored_surface(const Root& root, const Pieces& pieces, const SurfaceOptions& options = {},

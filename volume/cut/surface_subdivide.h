@@ -1,6 +1,8 @@
 #pragma once
-// Inside volume/io: triangles split until no edge is longer than a length, without cracks.
+// Triangles split until no edge is longer than a length, without cracks.
 #include "volume/cut/piece.h"
+
+#include <functional>
 
 namespace pith {
 
@@ -13,9 +15,10 @@ struct SurfaceFace {
 };
 
 /// An edge is split at its midpoint iff it is longer than `max_edge` (decided per edge, so neighbours always agree),
-/// in rounds until none is. Midpoints are appended to `position`; normals there are the mean of the ends'. Faces of
-/// one original triangle stay together. InvalidInput when more than `max_triangles` would result.
+/// in rounds until none is; with `asks`, only edges of faces for which that is true (those beside them follow).
+/// Midpoints are appended to `position`; normals there are the mean of the ends'. Faces of one original triangle stay
+/// together. InvalidInput when more than `max_triangles` would result.
 void subdivide(std::vector<Vec3d>& position, std::vector<SurfaceFace>& face, double max_edge,
-               std::size_t max_triangles);
+               std::size_t max_triangles, const std::function<bool(const SurfaceFace&)>& asks = {});
 
 } // namespace pith

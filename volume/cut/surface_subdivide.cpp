@@ -1,4 +1,4 @@
-#include "volume/io/subdivide.h"
+#include "volume/cut/surface_subdivide.h"
 
 #include "volume/base/error.h"
 #include "volume/base/parallel.h"
@@ -71,7 +71,7 @@ void split(const SurfaceFace& face, const std::array<std::uint32_t, 3>& mid, con
 } // namespace
 
 void subdivide(std::vector<Vec3d>& position, std::vector<SurfaceFace>& face, double max_edge,
-               std::size_t max_triangles) {
+               std::size_t max_triangles, const std::function<bool(const SurfaceFace&)>& asks) {
   const double longest = max_edge * max_edge;
   const auto refuse = [&](double count) {
     char text[96];
@@ -83,7 +83,7 @@ void subdivide(std::vector<Vec3d>& position, std::vector<SurfaceFace>& face, dou
   double least = 0;
   for (const SurfaceFace& f : face) {
     const Vec3d &a = position[f.point[0]], &b = position[f.point[1]], &c = position[f.point[2]];
-    least += std::max(1.0, (b - a).cross(c - a).norm() / longest);
+    least += asks && !asks(f) ? 1 : std::max(1.0, (b - a).cross(c - a).norm() / longest);
   }
   if (least > static_cast<double>(max_triangles)) refuse(least);
   const auto too_long = [&](std::uint32_t a, std::uint32_t b) {
@@ -92,12 +92,14 @@ void subdivide(std::vector<Vec3d>& position, std::vector<SurfaceFace>& face, dou
   for (;;) {
     std::vector<Edge> edge;
     std::size_t parts = face.size();
-    for (const SurfaceFace& f : face)
+    for (const SurfaceFace& f : face) {
+      if (asks && !asks(f)) continue;
       for (int i = 0; i < 3; ++i)
         if (too_long(f.point[i], f.point[(i + 1) % 3])) {
           edge.push_back(edge_between(f.point[i], f.point[(i + 1) % 3]));
           ++parts;
         }
+    }
     if (edge.empty()) return;
     if (parts > max_triangles) refuse(static_cast<double>(parts));
     std::sort(edge.begin(), edge.end());
@@ -119,6 +121,7 @@ void subdivide(std::vector<Vec3d>& position, std::vector<SurfaceFace>& face, dou
           const std::uint32_t a = face[f].point[i], b = face[f].point[(i + 1) % 3];
           if (!too_long(a, b)) continue;
           const auto at = std::lower_bound(edge.begin(), edge.end(), edge_between(a, b));
+          if (at == edge.end() || *at != edge_between(a, b)) continue; // no face that asks has it
           mid[i] = first + static_cast<std::uint32_t>(at - edge.begin());
         }
         split(face[f], mid, position, result);
