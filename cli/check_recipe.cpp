@@ -10,6 +10,7 @@
 #include "volume/mesh/surface_plan.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <optional>
 
@@ -59,6 +60,7 @@ public:
         static_cast<std::size_t>(solid.region) >= shells)
       add(at + "/region", "is " + std::to_string(solid.region),
           "the surface has " + std::to_string(shells) + " shell(s); regions count from 0");
+    look_at_things(solid, at);
     if (solid.kind == Solid::Kind::plain) return;
     for (const auto& [name, constraints] :
          {std::pair{"/depth", &solid.depth}, {"/along", &solid.along}, {"/around", &solid.around}})
@@ -152,6 +154,31 @@ private:
     if (!apart) return;
     add(where, "lies beside the surface, which spans " + box_text(),
         hint.empty() ? "draw it on or inside the surface" : "is \"scale\" of the surface right? " + hint);
+  }
+
+  void look_at_things(const Solid& solid, const std::string& at) {
+    for (std::size_t k = 0; k < solid.pastes.size(); ++k) {
+      const PasteOptions& paste = solid.pastes[k].options;
+      const std::string place = at + "/pastes/" + std::to_string(k);
+      look_at_exemplar(solid.pastes[k].thing.exemplar, place + "/exemplar");
+      look_at_stroke({paste.place}, place + "/place");
+      look_at_size(paste.size, place + "/size");
+    }
+    for (std::size_t k = 0; k < solid.scatter.size(); ++k) {
+      const ScatterOptions& scatter = solid.scatter[k].options;
+      const std::string place = at + "/scatter/" + std::to_string(k);
+      look_at_exemplar(solid.scatter[k].thing.exemplar, place + "/exemplar");
+      if (scatter.groups > 0 || std::isfinite(scatter.along[0]) || std::isfinite(scatter.along[1]))
+        look_at_stroke({scatter.axis[0], scatter.axis[1]}, place + "/axis");
+      look_at_size(scatter.size, place + "/size");
+    }
+  }
+
+  /// Things that are larger than what they are pasted on.
+  void look_at_size(double size, const std::string& where) {
+    if (!surface || bounds_.empty() || !(size > bounds_.extent().maxCoeff())) return;
+    add(where, fmt::format("is {:.4g} mm, more than the surface, which spans {}", size, box_text()),
+        hint.empty() ? "make the thing smaller" : "is \"scale\" of the surface right? " + hint);
   }
 
   void look_at_triangles(const std::vector<TriangleId>& triangles, const std::string& where) {

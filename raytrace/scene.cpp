@@ -81,7 +81,7 @@ void gather(const RTCFilterFunctionNArguments* arguments) {
   if (error == RTC_ERROR_UNSUPPORTED_CPU)
     throw InvalidInput("this computer", "its processor lacks the instructions (AVX2) that pictures are computed with",
                        "render on a newer one");
-  throw SolverFailure("Embree cannot hold the scene: its error " + std::to_string(error), 0);
+  throw SolverFailure("Embree cannot hold the scene: its error " + std::to_string(error));
 }
 
 void require_look(const SurfaceLook& look, const char* where) {

@@ -250,7 +250,11 @@ TEST_F(Cli, CheckOfRecipes) {
       "solids": [{"type": "2-b", "region": 1,
         "depth": [{"triangles": [3, 99999], "value": 0}, {"stroke": [[0, 0, -800], [0, 0, -500]], "value": 1}],
         "orientation": [{"stroke": [[0, 90, -8], [0, 90, 8]]}],
-        "exemplar": {"file": "gone.exemplar"}}],
+        "exemplar": {"file": "gone.exemplar"},
+        "scatter": [{"exemplar": {"file": "gone.exemplar"}, "count": 5, "size": 500, "groups": 3,
+                     "axis": [[90, 0, 0], [90, 0, 10]]}],
+        "pastes": [{"exemplar": {"procedural": "almond"}, "place": [0, 0, 70], "size": 4},
+                   {"exemplar": {"procedural": "almond"}, "place": [0, 0, 5], "size": 90}]}],
       "cuts": [{"plane": {"normal": [0, 0, 1], "offset": 33}}], "scene": "gone_scene.json"})");
   const Outcome outcome = program.run({"check", "bad.json", "--json"});
   EXPECT_EQ(outcome.code, 1);
@@ -258,10 +262,13 @@ TEST_F(Cli, CheckOfRecipes) {
   const json object = json::parse(outcome.output, nullptr, false);
   std::string all;
   for (const json& finding : object["findings"]) all += std::string(finding["what"]) + "\n";
-  for (const char* place : {"/solids/0/region", "/solids/0/depth/0/triangles", "/solids/0/depth/1/stroke",
-                            "/solids/0/orientation/0/stroke", "/solids/0/exemplar/file", "/cuts/0", "/scene"})
+  for (const char* place :
+       {"/solids/0/region", "/solids/0/depth/0/triangles", "/solids/0/depth/1/stroke",
+        "/solids/0/orientation/0/stroke", "/solids/0/exemplar/file", "/solids/0/scatter/0/exemplar/file",
+        "/solids/0/scatter/0/axis", "/solids/0/scatter/0/size", "/solids/0/pastes/0/place", "/solids/0/pastes/1/size",
+        "/cuts/0", "/scene"})
     EXPECT_NE(all.find(std::string("bad.json: ") + place + ":"), std::string::npos) << place << " not in\n" << all;
-  EXPECT_EQ(object["findings"].size(), 7u) << all;
+  EXPECT_EQ(object["findings"].size(), 12u) << all;
 }
 
 TEST_F(Cli, AnErrorIsAnObjectToo) {

@@ -15,9 +15,10 @@ struct InvalidInput : std::runtime_error {
 
 /// A numerical method did not reach its goal.
 struct SolverFailure : std::runtime_error {
+  using std::runtime_error::runtime_error;
+  /// `residual`: what was left of the error.
   SolverFailure(const std::string& what, double residual)
-      : std::runtime_error(what + " (residual " + std::to_string(residual) + ")"), residual(residual) {}
-  double residual;
+      : std::runtime_error(what + " (residual " + std::to_string(residual) + ")") {}
 };
 
 /// A file could not be read or written.

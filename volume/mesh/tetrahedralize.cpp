@@ -209,7 +209,7 @@ TriMesh solid_wrap(const TriMesh& mesh, const std::string& name, const Tetrahedr
     // Around a mere sheet the wrap is a pillow 2 · offset thick: volume = offset · area.
     if (signed_volume(wrap) > 1.5 * offset * area_of(wrap)) return wrap;
   }
-  if (!any) throw SolverFailure(name + ": neither TetGen nor CGAL's alpha wrap can take the surface", 0);
+  if (!any) throw SolverFailure(name + ": neither TetGen nor CGAL's alpha wrap can take the surface");
   throw InvalidInput(
       name, "the surface encloses no volume, even with holes up to " + short_number(alpha_used) + " mm closed",
       "give a closed surface");
@@ -236,7 +236,7 @@ void mesh_wrap(const TriMesh& original, const TriMesh& mesh, const std::string& 
   const Progress rest = progress ? Progress([&](double f) { return progress(0.4 + 0.6 * f); }) : Progress();
   const std::string failure = fill_clean(std::move(ready), name, options, rest, result);
   if (!failure.empty())
-    throw SolverFailure(name + ": the surface cannot be filled (" + reason + "), nor can its wrap: " + failure, 0);
+    throw SolverFailure(name + ": the surface cannot be filled (" + reason + "), nor can its wrap: " + failure);
 }
 
 /// A surface with its holes closed and a few faults cut out, as far as that goes.
@@ -305,7 +305,7 @@ TetrahedralizeResult tetrahedralize(const TriMesh& input, const std::string& nam
     if (failure.empty()) return result;
     result = {};
     if (!crossing) { // a clean surface that is beyond TetGen
-      if (options.method == Method::tetgen) throw SolverFailure(name + ": " + failure, 0);
+      if (options.method == Method::tetgen) throw SolverFailure(name + ": " + failure);
       mesh_wrap(input, ready.mesh, name, failure, options, progress, result);
       return result;
     }
