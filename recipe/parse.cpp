@@ -304,6 +304,14 @@ Recipe parse_recipe(const std::string& text, const std::string& file) {
                      "give each solid a region of its own");
       result.solids.push_back(std::move(solid));
     }
+  const auto marks_core = [](const DepthConstraint& one) { return one.value == 1 && one.stroke.size() > 1; };
+  if (result.tetrahedralize.core_edge > 0 &&
+      std::none_of(result.solids.begin(), result.solids.end(), [&](const Solid& solid) {
+        return std::any_of(solid.depth.begin(), solid.depth.end(), marks_core);
+      }))
+    root.at("tetrahedralize")
+        .fail("has a core_edge, but no solid has a stroke of depth 1",
+              "draw one along the core, or leave core_edge out");
   if (const auto cuts = root.find("cuts"))
     for (const JsonNode& entry : cuts->items(0, "")) result.cuts.push_back(cut_from(entry));
   if (const auto moves = root.find("moves"))

@@ -12,14 +12,14 @@ std::string kiwi(const std::string& from = "", const std::string& to = "") {
   std::string text = R"({
     "pith": 1, "name": "kiwi",
     "surface": {"file": "../meshes/kiwi.obj", "scale": 2},
-    "tetrahedralize": {"interior_edge": 4, "boundary_edge": 0, "method": "automatic"},
+    "tetrahedralize": {"interior_edge": 4, "boundary_edge": 0, "method": "automatic", "core_edge": 1.5, "core_growth": 0.3},
     "solids": [{
       "region": 0, "type": "2-b",
       "depth": [{"skin": true, "value": 0}, {"stroke": [[0, 0, -26], [0, 0, 26]], "value": 1}],
       "orientation": [{"stroke": [[0, 0, -26], [0, 0, 26]]}],
       "exemplar": {"procedural": "kiwi", "resolution": 64, "seed": 3},
       "mask": {"radius": 0.38, "drop_off": 0.05},
-      "fill": {"coverage_order": 6},
+      "fill": {"coverage_order": 6, "length_weight": 0.1}, "depth_options": {"overshoot": "guard"},
       "frame": {"largest_scale": 40},
       "seed": 7,
       "scatter": [{"exemplar": {"procedural": "kiwi-seed", "resolution": 32}, "count": 90, "spacing": 1.5, "size": 2.2,
@@ -116,7 +116,7 @@ TEST(Recipe, WrittenTextReadsBackAlike) {
   const std::string once = recipe_text(parse_recipe(kiwi(), "kiwi.json"));
   const std::string twice = recipe_text(parse_recipe(once, "kiwi.json"));
   EXPECT_EQ(once, twice);
-  for (const char* part : {"\"radius\": 0.38", "\"coverage_order\": 6", "\"largest_scale\": 40", "\"seed\": 7",
+  for (const char* part : {"\"radius\": 0.38", "\"coverage_order\": 6", "\"length_weight\": 0.1", "\"core_edge\": 1.5", "\"overshoot\": \"guard\"", "\"largest_scale\": 40", "\"seed\": 7",
                            "\"spread\": 10", "\"keep\": \"left\"", "[0, 0, 9]", "\"angle\": 0.5", "\"height\": 80",
                            "studio.json", "\"scale\": 2", "\"resolution\": 64", "[0, -1, 0]", "[0.3, 0.2, 0.1]",
                            "\"count\": 90", "\"spacing\": 1.5", "\"gap\": 0.1", "\"along\": [0.1, 0.8]",
@@ -163,6 +163,10 @@ INSTANTIATE_TEST_SUITE_P(Recipe, RecipeMistakes, ::testing::ValuesIn(std::vector
   {"UnknownAxes", "\"axes\": \"rest\"", "\"axes\": \"world\"", "kiwi.json: /solids/0/pastes/0/axes: is \"world\", which is not known"},
   {"Text", "\"interior_edge\": 4", "\"interior_edge\": \"4\"", "kiwi.json: /tetrahedralize/interior_edge: is \"4\", must be a number; give millimetres"},
   {"NotANumber", "\"interior_edge\": 4", "\"interior_edge\": NaN", "kiwi.json: is not JSON: line 4, column"},
+  {"LengthWeight", "\"length_weight\": 0.1", "\"length_weight\": 0", "kiwi.json: /solids/0/fill/length_weight: is 0, must be above 0, to 1"},
+  {"CoreGrowth", "\"core_growth\": 0.3", "\"core_growth\": 0", "kiwi.json: /tetrahedralize/core_growth: is 0, must be 0.01 or more"},
+  {"CoreWithoutStroke", "{\"stroke\": [[0, 0, -26], [0, 0, 26]], \"value\": 1}", "{\"stroke\": [[0, 0, 0]], \"value\": 1}", "kiwi.json: /tetrahedralize: has a core_edge, but no solid has a stroke of depth 1"},
+  {"Overshoot", "\"guard\"", "\"sometimes\"", "kiwi.json: /solids/0/depth_options/overshoot: is \"sometimes\""},
   {"Endless", "\"interior_edge\": 4", "\"interior_edge\": 1e999", "kiwi.json: holds a number too large"},
   {"Null", "\"interior_edge\": 4", "\"interior_edge\": null", "kiwi.json: /tetrahedralize/interior_edge: is null, must be a number"},
   {"UnknownTopKey", "\"solids\"", "\"solid\"", "kiwi.json: /solid: is not a known key; did you mean \"solids\"?"},

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::uint32_t none = 0xffffffffu;
 constexpr double default_edges = 400; ///< along the longest extent
+constexpr double least_rise = 2e-6;   ///< of the longest extent: lower walls would have no area in a file
 constexpr float same_normal = 0.999f; ///< cosine: two faces are one smooth surface at a corner
 
 class Displacer {
@@ -26,12 +27,13 @@ public:
   }
 
   DisplacedSurface run(const ReliefFunction& height, const DisplaceOptions& options) {
-    const double max_edge =
-        options.max_edge > 0 ? options.max_edge : bounds_of(mesh_).extent().maxCoeff() / default_edges;
-    subdivide(result_.rest, result_.face, max_edge, options.max_triangles,
-              [&](const SurfaceFace& face) { return is_skin(face); });
+    const double extent = bounds_of(mesh_).extent().maxCoeff();
+    const double max_edge = options.max_edge > 0 ? options.max_edge : extent / default_edges;
+    subdivide(
+        result_.rest, result_.face, max_edge, options.max_triangles,
+        [&](const SurfaceFace& face) { return is_skin(face); }, "displacement_edge");
     find_points();
-    move(height, options.scale);
+    move(height, options.scale, least_rise * extent);
     attach();
     set_normals();
     return std::move(result_);
@@ -55,11 +57,10 @@ private:
       }
   }
 
-  void move(const ReliefFunction& height, double scale) {
+  void move(const ReliefFunction& height, double scale, double least) {
     const PerVertex<Vec3d> normal = skin_normals(mesh_, boundary_);
     const std::size_t count = result_.rest.size();
     result_.position = result_.rest;
-    std::vector<double> rise(count, 0.0);
     parallel_for(count, 256, [&](std::size_t p) {
       if (!facet_[p].exists()) return;
       const auto& corner = boundary_.corner[facet_[p]];
@@ -70,8 +71,8 @@ private:
       for (int i = 0; i < 3; ++i) outwards += at.barycentric[i] * normal[corner[i]];
       const double length = outwards.norm();
       if (!(length > 0)) return; // the skin is folded flat there
-      rise[p] = scale * height(x, facet_[p], boundary_.tet[facet_[p]]);
-      result_.position[p] = x + rise[p] / length * outwards;
+      const double rise = scale * height(x, facet_[p], boundary_.tet[facet_[p]]);
+      if (rise >= least) result_.position[p] = x + rise / length * outwards;
     });
     twin_.assign(count, none);
     for (std::size_t p = 0; p < count; ++p) {

@@ -71,13 +71,13 @@ void split(const SurfaceFace& face, const std::array<std::uint32_t, 3>& mid, con
 } // namespace
 
 void subdivide(std::vector<Vec3d>& position, std::vector<SurfaceFace>& face, double max_edge,
-               std::size_t max_triangles, const std::function<bool(const SurfaceFace&)>& asks) {
+               std::size_t max_triangles, const std::function<bool(const SurfaceFace&)>& asks, const char* where) {
   const double longest = max_edge * max_edge;
   const auto refuse = [&](double count) {
     char text[96];
     std::snprintf(text, sizeof text, "%.3g mm makes %.3g triangles or more, beyond the limit of %.3g", max_edge,
                   count, static_cast<double>(max_triangles));
-    throw InvalidInput("max_edge", text, "give a longer edge");
+    throw InvalidInput(where, text, "give a longer edge");
   };
   // Without an edge that is longer, a triangle has at most the area √3/4 · max_edge²: so many parts at least.
   double least = 0;
