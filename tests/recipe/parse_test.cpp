@@ -322,9 +322,9 @@ TEST(Recipe, FillsUpToCreasesAreReadAndWritten) {
                                                                 "{\"fill\": 12, \"value\": 0.5}");
   const std::string more = [&] {
     std::string t = text;
-    const std::string key = "\"mask\":";
+    const std::string key = "\"overshoot\":";
     return t.replace(t.find(key), key.size(),
-                     "\"depth_options\": {\"extrema\": \"keep\", \"persistence\": 0.05, \"max_centers\": 300}, " + key);
+                     "\"extrema\": \"keep\", \"persistence\": 0.05, \"max_centers\": 300, " + key);
   }();
   const Recipe recipe = parse_recipe(more, "kiwi.json");
   const Recipe again = parse_recipe(recipe_text(recipe), "kiwi.json");
@@ -338,6 +338,7 @@ TEST(Recipe, FillsUpToCreasesAreReadAndWritten) {
     EXPECT_EQ(solid.depth[1].fill->triangle, TriangleId(12));
     EXPECT_EQ(solid.depth[1].fill->crease, FaceFill().crease);
     EXPECT_FALSE(solid.depth_options.remove_extrema);
+    EXPECT_TRUE(solid.depth_options.guard_overshoot);
     EXPECT_EQ(solid.depth_options.persistence, 0.05);
     EXPECT_EQ(solid.depth_options.max_centers, 300);
   }
