@@ -55,6 +55,32 @@ inline std::size_t bad_edges(const PieceSurface& surface) {
   return bad;
 }
 
+/// Vertices of a surface at which it hangs together by the vertex alone: more than one fan of triangles.
+inline std::size_t pinched_vertices(const PieceSurface& surface) {
+  std::vector<std::uint32_t> parent(3 * surface.triangle.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto root_of = [&](std::uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<std::uint32_t, std::uint32_t>> side; // its corners
+  for (std::uint32_t t = 0; t < surface.triangle.size(); ++t)
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t from = 3 * t + k, to = 3 * t + (k + 1) % 3;
+      const auto& corner = surface.triangle[t].corner;
+      side[{corner[k], corner[(k + 1) % 3]}] = {from, to};
+    }
+  for (const auto& [edge, corners] : side)
+    if (const auto back = side.find({edge.second, edge.first}); back != side.end()) {
+      parent[root_of(corners.first)] = root_of(back->second.second);
+      parent[root_of(corners.second)] = root_of(back->second.first);
+    }
+  std::map<std::uint32_t, int> fans;
+  for (std::uint32_t i = 0; i < parent.size(); ++i)
+    if (root_of(i) == i) ++fans[surface.triangle[i / 3].corner[i % 3]];
+  return std::count_if(fans.begin(), fans.end(), [](const auto& fan) { return fan.second > 1; });
+}
+
 inline double surface_volume(const PieceSurface& surface) {
   double six = 0;
   for (const auto& t : surface.triangle)
@@ -117,7 +143,9 @@ inline void check_pieces(const Pieces& pieces, const TetMesh& root, const Bounda
     SCOPED_TRACE("piece " + std::to_string(p));
     sum += check_piece(pieces, p, root, boundary);
     if (manifold) {
-      EXPECT_EQ(bad_edges(surface_of(pieces, p, root, boundary)), 0u);
+      const PieceSurface surface = surface_of(pieces, p, root, boundary);
+      EXPECT_EQ(bad_edges(surface), 0u);
+      EXPECT_EQ(pinched_vertices(surface), 0u);
     }
   }
   for (const TetId t : all_ids<TetId>(root.tet_count())) whole += signed_volume(root, t);

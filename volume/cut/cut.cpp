@@ -4,17 +4,21 @@
 
 #include "volume/base/error.h"
 #include "volume/base/parallel.h"
+#include "volume/cut/clusters.h"
 #include "volume/cut/subdivide.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <optional>
 #include <string>
 
 namespace pith {
 namespace {
 
 constexpr double smallest_snap = 1e-6, largest_snap = 0.4;
+constexpr double largest_flat_snap = 0.01, flatness = 1e-6; ///< of the solid's diagonal, of a plane's section
 
 void check(const Pieces& pieces, const TetMesh& root, const Boundary& boundary, const CutOptions& options) {
   if (pieces.root_vertex_count != root.vertex_count() || pieces.label.size() != root.tet_count() ||
@@ -34,69 +38,118 @@ void check(const Pieces& pieces, const TetMesh& root, const Boundary& boundary, 
 
 bool same(const Rigid& a, const Rigid& b) { return a.rotation == b.rotation && a.translation == b.translation; }
 
+constexpr std::uint32_t no_group = 0xffffffffu;
+
 /// The pieces to cut, by placement, in the order of their first piece.
-std::vector<PieceGroup> groups_of(const Pieces& pieces, const std::vector<std::uint32_t>& only) {
+struct Groups {
+  std::vector<PieceGroup> group;
+  std::vector<std::uint32_t> of_piece; ///< no_group: not cut
+};
+
+Groups groups_of(const Pieces& pieces, const std::vector<std::uint32_t>& only) {
   std::vector<bool> wanted(pieces.piece.size(), only.empty());
   for (const std::uint32_t p : only) wanted[p] = true;
-  std::vector<PieceGroup> groups;
-  std::vector<std::uint32_t> group_of(pieces.piece.size(), 0xffffffffu);
+  Groups groups;
+  groups.of_piece.assign(pieces.piece.size(), no_group);
   for (std::uint32_t p = 0; p < pieces.piece.size(); ++p) {
     if (!wanted[p]) continue;
-    const auto at = std::find_if(groups.begin(), groups.end(), [&](const PieceGroup& group) {
+    const auto at = std::find_if(groups.group.begin(), groups.group.end(), [&](const PieceGroup& group) {
       return same(group.placement, pieces.piece[p].placement);
     });
-    group_of[p] = static_cast<std::uint32_t>(at - groups.begin());
-    if (at == groups.end()) groups.push_back({pieces.piece[p].placement, {}, {}, false});
-    groups[group_of[p]].piece.push_back(p);
+    groups.of_piece[p] = static_cast<std::uint32_t>(at - groups.group.begin());
+    if (at == groups.group.end()) {
+      groups.group.emplace_back();
+      groups.group.back().placement = pieces.piece[p].placement;
+    }
+    groups.group[groups.of_piece[p]].piece.push_back(p);
   }
-  if (groups.size() == 1 && groups[0].piece.size() == pieces.piece.size()) {
-    groups[0].everything = true;
-    return groups;
-  }
-  for (const TetId t : all_ids<TetId>(pieces.label.size()))
-    if (const std::uint32_t p = pieces.label[t]; p != Pieces::was_cut && group_of[p] != 0xffffffffu)
-      groups[group_of[p]].whole.push_back(t);
   return groups;
 }
 
-/// φ(placement · x) at the vertices of a group's pieces; elsewhere what was there (0 at first).
-void evaluate(const Pieces& pieces, const TetMesh& root, const PieceGroup& group, const LevelSet& level_set,
-              std::vector<double>& value) {
-  const std::size_t vertices = pieces.root_vertex_count + pieces.added.size();
-  value.resize(vertices, 0.0);
+/// All whole tets of the groups are to be looked at.
+void take_all_tets(Groups& groups, const Pieces& pieces) {
+  if (groups.group.size() == 1 && groups.group[0].piece.size() == pieces.piece.size()) {
+    groups.group[0].everything = true;
+    return;
+  }
+  for (const TetId t : all_ids<TetId>(pieces.label.size()))
+    if (const std::uint32_t p = pieces.label[t]; p != Pieces::was_cut && groups.of_piece[p] != no_group)
+      groups.group[groups.of_piece[p]].whole.push_back(t);
+}
+
+/// The whole tets of group g in clusters that the level set may reach; of the others the side.
+void take_near_tets(Groups& groups, std::uint32_t g, const Pieces& pieces, const TetClusters& clusters,
+                    const LevelSet& level_set) {
+  PieceGroup& group = groups.group[g];
+  group.clusters = &clusters;
+  group.cluster_side = sides_of_clusters(clusters, level_set, group.placement);
+  group.seen_far.assign(pieces.piece.size(), 0);
+  constexpr std::size_t block = 256;
+  std::vector<std::vector<TetId>> near((clusters.count() + block - 1) / block);
+  parallel_blocks(clusters.count(), block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      const int side = group.cluster_side[c];
+      std::uint32_t last = Pieces::was_cut;
+      for (const TetId t : clusters.tets(c)) {
+        const std::uint32_t p = pieces.label[t];
+        if (p == Pieces::was_cut || (side != 0 && p == last) || groups.of_piece[p] != g) continue;
+        last = p;
+        if (side == 0)
+          near[begin / block].push_back(t);
+        else
+          std::atomic_ref<std::uint8_t>(group.seen_far[p])
+              .fetch_or(side < 0 ? side_below : side_above, std::memory_order_relaxed);
+      }
+    }
+  });
+  for (const std::vector<TetId>& part : near) group.whole.insert(group.whole.end(), part.begin(), part.end());
+}
+
+/// The vertices of all tets that are looked at; empty: all vertices of the pieces are.
+std::vector<VertexId> vertices_of(const Pieces& pieces, const TetMesh& root, const PieceGroup& group) {
+  std::vector<VertexId> vertex;
+  if (group.everything) return vertex;
+  std::vector<std::uint8_t> used(pieces.root_vertex_count + pieces.added.size(), 0);
+  const auto use = [&](const std::array<VertexId, 4>& corner) {
+    for (const VertexId v : corner)
+      if (!used[v]) {
+        used[v] = 1;
+        vertex.push_back(v);
+      }
+  };
+  for (const TetId t : group.whole) use(root.corner[t]);
+  for (const std::uint32_t p : group.piece)
+    for (const CutTet& tet : pieces.piece[p].cut)
+      if (group.far_side(tet.root) == 0) use(tet.corner);
+  return vertex;
+}
+
+/// φ(placement · x) at the vertices that the group looks at; elsewhere anything.
+void evaluate(const Pieces& pieces, const TetMesh& root, const PieceGroup& group, std::span<const VertexId> vertex,
+              const LevelSet& level_set, std::vector<double>& value) {
+  value.resize(pieces.root_vertex_count + pieces.added.size());
   if (group.everything && group.placement.identity()) {
     level_set.values(root.position, std::span(value).first(root.vertex_count()));
     level_set.values(pieces.added_position, std::span(value).subspan(root.vertex_count()));
     return;
   }
-  std::vector<bool> used(vertices, group.everything);
-  for (const TetId t : group.whole)
-    for (const VertexId v : root.corner[t]) used[v] = true;
-  for (const std::uint32_t p : group.piece)
-    for (const CutTet& tet : pieces.piece[p].cut)
-      for (const VertexId v : tet.corner) used[v] = true;
-  std::vector<VertexId> vertex;
-  std::vector<Vec3d> place;
-  for (std::size_t v = 0; v < vertices; ++v)
-    if (used[v]) {
-      vertex.push_back(VertexId(v));
-      place.push_back(group.placement(pieces.position(root, VertexId(v))));
-    }
-  std::vector<double> there(place.size());
+  const std::size_t count = group.everything ? value.size() : vertex.size();
+  const auto at = [&](std::size_t i) { return group.everything ? VertexId(i) : vertex[i]; };
+  std::vector<Vec3d> place(count);
+  parallel_for(count, 16384, [&](std::size_t i) { place[i] = group.placement(pieces.position(root, at(i))); });
+  std::vector<double> there(count);
   level_set.values(place, there);
-  for (std::size_t i = 0; i < vertex.size(); ++i) value[vertex[i]] = there[i];
+  for (std::size_t i = 0; i < count; ++i) value[at(i)] = there[i];
 }
 
-[[noreturn]] void refuse_uncut(double low, double high) {
-  throw InvalidInput("cut",
-                     "nothing is cut: the field runs from " + std::to_string(low) + " to " + std::to_string(high) +
-                         " over the pieces, all on one side",
-                     "move the cut so that it passes through a piece");
+/// As reserve, but many small steps cost no more than one large.
+template <class T>
+void reserve_ahead(std::vector<T>& values, std::size_t count) {
+  if (count > values.capacity()) values.reserve(std::max(count, values.size() + values.size() / 2));
 }
 
 /// Puts the cuts of all groups into the pieces. All memory is taken first, so that nothing changes if it runs out.
-CutResult commit(Pieces& pieces, const std::vector<PieceGroup>& groups, const std::vector<Sides>& sides,
-                 std::vector<GroupCut>& cuts) {
+CutResult commit(Pieces& pieces, const Groups& groups, const std::vector<Sides>& sides, std::vector<GroupCut>& cuts) {
   CutResult result;
   std::size_t added = pieces.added.size(), on_section = pieces.on_section.size();
   std::vector<std::uint32_t> right_of(pieces.piece.size(), Pieces::was_cut);
@@ -121,19 +174,26 @@ CutResult commit(Pieces& pieces, const std::vector<PieceGroup>& groups, const st
   normals.erase(std::unique(normals.begin(), normals.end(),
                             [](const SectionNormal& a, const SectionNormal& b) { return a.vertex == b.vertex; }),
                 normals.end());
-  pieces.added.reserve(added);
-  pieces.added_position.reserve(added);
-  pieces.added_normal.reserve(added);
-  pieces.on_section.reserve(on_section);
+  reserve_ahead(pieces.added, added);
+  reserve_ahead(pieces.added_position, added);
+  reserve_ahead(pieces.added_normal, added);
+  reserve_ahead(pieces.on_section, on_section);
   pieces.piece.reserve(result.origin.size());
 
-  constexpr std::size_t block = 65536;
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    const PieceGroup& group = groups[g];
+  constexpr std::size_t block = 65536, clusters_per_block = 256;
+  for (std::size_t g = 0; g < groups.group.size(); ++g) {
+    const PieceGroup& group = groups.group[g];
+    const auto to_right = [&](TetId t) {
+      std::uint32_t& label = pieces.label[t];
+      if (label < right_of.size() && groups.of_piece[label] == g && right_of[label] != Pieces::was_cut)
+        label = right_of[label];
+    };
     parallel_for(sides[g].whole.size(), block, [&](std::size_t i) {
-      if (sides[g].whole[i] != side_above) return;
-      std::uint32_t& label = pieces.label[group.everything ? TetId(i) : group.whole[i]];
-      if (right_of[label] != Pieces::was_cut) label = right_of[label];
+      if (sides[g].whole[i] == side_above) to_right(group.everything ? TetId(i) : group.whole[i]);
+    });
+    parallel_for(group.cluster_side.size(), clusters_per_block, [&](std::size_t c) {
+      if (group.cluster_side[c] > 0)
+        for (const TetId t : group.clusters->tets(c)) to_right(t);
     });
     for (const TetId t : cuts[g].opened) pieces.label[t] = Pieces::was_cut;
     pieces.added.insert(pieces.added.end(), cuts[g].added.begin(), cuts[g].added.end());
@@ -151,64 +211,111 @@ CutResult commit(Pieces& pieces, const std::vector<PieceGroup>& groups, const st
   return result;
 }
 
-/// Cuts all groups; values_of(group) gives a group's values.
-template <class Values>
-CutResult cut_groups(Pieces& pieces, const TetMesh& root, const Boundary& boundary, const LevelSet* level_set,
-                     const CutOptions& options, const Values& values_of) {
-  check(pieces, root, boundary, options);
-  const double snap = std::max(options.snap, smallest_snap);
-  const std::vector<PieceGroup> groups = groups_of(pieces, options.only);
-  std::vector<Sides> sides(groups.size());
-  std::vector<GroupCut> cuts(groups.size());
-  std::size_t next = pieces.root_vertex_count + pieces.added.size();
-  bool any = false;
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    const std::span<const double> value = values_of(groups[g]);
-    sides[g] = sides_of(pieces, root, groups[g], value, snap);
-    cuts[g] = subdivided(pieces, root, boundary, groups[g], sides[g], {value, level_set, snap}, VertexId(next));
-    next += cuts[g].added.size();
-    any |= !cuts[g].piece.empty();
-    sides[g].state = {};
+} // namespace
+
+struct Cutter::Parts {
+  const TetMesh& root;
+  const Boundary& boundary;
+  std::optional<TetClusters> clusters; ///< none: every tet is looked at
+  double diagonal;
+  std::vector<double> value; ///< memory that is used again
+
+  /// `values` in place of the level set's where there are any.
+  CutResult cut(Pieces& pieces, std::optional<std::span<const double>> values, const LevelSet* level_set,
+                const CutOptions& options) {
+    check(pieces, root, boundary, options);
+    Groups groups = groups_of(pieces, options.only);
+    const bool near_only = clusters && !values;
+    if (!near_only) take_all_tets(groups, pieces);
+    const std::size_t count = groups.group.size();
+    std::vector<Sides> sides(count);
+    std::vector<GroupCut> cuts(count);
+    std::size_t next = pieces.root_vertex_count + pieces.added.size();
+    bool any = false;
+    for (std::uint32_t g = 0; g < count; ++g) {
+      if (near_only) take_near_tets(groups, g, pieces, *clusters, *level_set);
+      const PieceGroup& group = groups.group[g];
+      const std::vector<VertexId> vertex = vertices_of(pieces, root, group);
+      if (!values) evaluate(pieces, root, group, vertex, *level_set, value);
+      GroupField field{values ? *values : std::span<const double>(value), vertex, level_set,
+                       std::max(options.snap, smallest_snap), std::numeric_limits<double>::infinity()};
+      if (level_set && level_set->linear() && options.snap <= largest_flat_snap)
+        field.snap_distance = flatness * diagonal;
+      sides[g] = sides_of(pieces, root, group, field);
+      if (options.manifold) part_pinches(pieces, root, group, field, sides[g]);
+      cuts[g] = subdivided(pieces, root, boundary, group, sides[g], field, VertexId(next));
+      next += cuts[g].added.size();
+      any |= !cuts[g].piece.empty();
+      sides[g].state = {};
+    }
+    if (!any) refuse_uncut(pieces, values, level_set, options);
+    return commit(pieces, groups, sides, cuts);
   }
-  if (!any) {
+
+  [[noreturn]] void refuse_uncut(const Pieces& pieces, std::optional<std::span<const double>> values,
+                                 const LevelSet* level_set, const CutOptions& options) {
+    Groups groups = groups_of(pieces, options.only);
+    take_all_tets(groups, pieces);
     double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const PieceGroup& group : groups) {
-      const std::span<const double> value = values_of(group);
+    for (const PieceGroup& group : groups.group) {
+      if (!values) evaluate(pieces, root, group, vertices_of(pieces, root, group), *level_set, value);
       const auto widen = [&](const std::array<VertexId, 4>& corner) {
         for (const VertexId v : corner) {
-          low = std::min(low, value[v]);
-          high = std::max(high, value[v]);
+          low = std::min(low, values ? (*values)[v] : value[v]);
+          high = std::max(high, values ? (*values)[v] : value[v]);
         }
       };
-      for (const TetId t : all_ids<TetId>(group.everything ? root.tet_count() : group.whole.size()))
-        widen(root.corner[group.everything ? t : group.whole[t]]);
+      for (const TetId t : all_ids<TetId>(group.everything ? root.tet_count() : group.whole.size())) {
+        const TetId whole = group.everything ? t : group.whole[t];
+        if (pieces.label[whole] != Pieces::was_cut) widen(root.corner[whole]);
+      }
       for (const std::uint32_t p : group.piece)
         for (const CutTet& tet : pieces.piece[p].cut) widen(tet.corner);
     }
-    refuse_uncut(low, high);
+    throw InvalidInput("cut",
+                       "nothing is cut: the field runs from " + std::to_string(low) + " to " + std::to_string(high) +
+                           " over the pieces, all on one side",
+                       "move the cut so that it passes through a piece");
   }
-  return commit(pieces, groups, sides, cuts);
+
+  CutResult cut_by_values(Pieces& pieces, std::span<const double> values, const LevelSet* level_set,
+                          const CutOptions& options) {
+    const std::size_t vertices = pieces.root_vertex_count + pieces.added.size();
+    if (values.size() != vertices)
+      throw InvalidInput("cut",
+                         std::to_string(values.size()) + " values for " + std::to_string(vertices) + " vertices",
+                         "give one value for every root vertex, then for every added vertex");
+    return cut(pieces, values, level_set, options);
+  }
+};
+
+Cutter::Cutter(const TetMesh& root, const Boundary& boundary)
+    : parts_(new Parts{root, boundary, clusters_of(root), bounds_of(root).diagonal(), {}}) {}
+Cutter::~Cutter() = default;
+Cutter::Cutter(Cutter&&) noexcept = default;
+
+CutResult Cutter::cut(Pieces& pieces, const LevelSet& level_set, const CutOptions& options) {
+  return parts_->cut(pieces, {}, &level_set, options);
+}
+CutResult Cutter::cut_by_values(Pieces& pieces, std::span<const double> value, const LevelSet* level_set,
+                                const CutOptions& options) {
+  return parts_->cut_by_values(pieces, value, level_set, options);
 }
 
-} // namespace
+Cutter::Cutter(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 
 CutResult cut(Pieces& pieces, const TetMesh& root, const Boundary& boundary, const LevelSet& level_set,
               const CutOptions& options) {
-  std::vector<double> value;
-  return cut_groups(pieces, root, boundary, &level_set, options, [&](const PieceGroup& group) {
-    evaluate(pieces, root, group, level_set, value);
-    return std::span<const double>(value);
-  });
+  const double diagonal = level_set.linear() ? bounds_of(root).diagonal() : 0;
+  return Cutter(std::unique_ptr<Cutter::Parts>(new Cutter::Parts{root, boundary, {}, diagonal, {}}))
+      .cut(pieces, level_set, options);
 }
 
 CutResult cut_by_values(Pieces& pieces, const TetMesh& root, const Boundary& boundary, std::span<const double> value,
                         const LevelSet* level_set, const CutOptions& options) {
-  if (value.size() != pieces.root_vertex_count + pieces.added.size())
-    throw InvalidInput("cut",
-                       std::to_string(value.size()) + " values for " +
-                           std::to_string(pieces.root_vertex_count + pieces.added.size()) + " vertices",
-                       "give one value for every root vertex, then for every added vertex");
-  return cut_groups(pieces, root, boundary, level_set, options, [&](const PieceGroup&) { return value; });
+  const double diagonal = level_set && level_set->linear() ? bounds_of(root).diagonal() : 0;
+  return Cutter(std::unique_ptr<Cutter::Parts>(new Cutter::Parts{root, boundary, {}, diagonal, {}}))
+      .cut_by_values(pieces, value, level_set, options);
 }
 
 void spread(Pieces& pieces, const CutResult& result, const TetMesh& root, double distance) {

@@ -19,6 +19,10 @@ public:
   double value(const Vec3d& x) const override { return normal_.dot(x) - offset_; }
   Vec3d gradient(const Vec3d&) const override { return normal_; }
   bool linear() const override { return true; }
+  int side_of_ball(const Vec3d& center, double radius) const override {
+    const double at = value(center), reach = radius + 1e-9 * (radius + std::abs(at));
+    return (at > reach) - (at < -reach);
+  }
 
 private:
   Vec3d normal_;
@@ -81,6 +85,10 @@ public:
     const Vec3d from = x - center_;
     const double distance = from.norm();
     return distance > 0 ? Vec3d(from / distance) : Vec3d::UnitZ();
+  }
+  int side_of_ball(const Vec3d& center, double radius) const override {
+    const double at = value(center), reach = radius + 1e-9 * (radius + std::abs(at));
+    return (at > reach) - (at < -reach);
   }
 
 private:

@@ -19,6 +19,9 @@ public:
   virtual double value(const Vec3d& x) const = 0;
   /// Direction of increase at x, any length; used for section normals.
   virtual Vec3d gradient(const Vec3d& x) const = 0;
+  /// −1 or +1 when φ certainly has that strict sign all through the closed ball; 0 where it may change or is not
+  /// known. Cuts pass over what lies in balls of one sign.
+  virtual int side_of_ball(const Vec3d& /*center*/, double /*radius*/) const { return 0; }
   /// Many values at once, in parallel; result[i] belongs to points[i] and equals value(points[i]) bit for bit.
   virtual void values(std::span<const Vec3d> points, std::span<double> result) const;
   /// True where the function is linear, so that one linear step along an edge finds its zero.

@@ -1,11 +1,14 @@
 // Both halves of every piece of a group: marching tetrahedra on three states (patterns.h).
 #include "volume/cut/subdivide.h"
 
+#include "volume/base/error.h"
 #include "volume/base/parallel.h"
 #include "volume/cut/edge_zero.h"
+#include "volume/cut/section_directions.h"
+#include "volume/mesh/orientation.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
+#include <atomic>
 
 namespace pith {
 namespace {
@@ -23,13 +26,6 @@ Tags tags_of(const TetReference& tet, const Pieces& pieces, const Boundary& boun
   for (int i = 0; i < 4; ++i) tags[i] = facets[i].exists() ? FaceTag::skin(facets[i]) : FaceTag::interior();
   return tags;
 }
-
-/// A tet that is not subdivided and has faces on the section.
-struct SectionTet {
-  TetReference tet;
-  std::uint8_t faces; ///< bit i: the face opposite corner i
-  bool above;
-};
 
 /// Inner faces with all corners on the zero set that part two halves: of the tets on both sides.
 std::vector<SectionTet> section_tets(const Pieces& pieces, const TetMesh& root, const Boundary& boundary,
@@ -89,25 +85,9 @@ Tags with_section(Tags tags, std::uint8_t faces, CutId cut) {
   return tags;
 }
 
-/// Six times the volume times the gradient of the values' linear interpolation over a tet.
-Vec3d weighted_gradient(const Pieces& pieces, const TetMesh& root, const Corners& corner,
-                        std::span<const double> value) {
-  Vec3d gradient = Vec3d::Zero();
-  for (int i = 0; i < 4; ++i) {
-    const auto& c = facet_corners[i];
-    const Vec3d &p = pieces.position(root, corner[c[0]]), &q = pieces.position(root, corner[c[1]]),
-                &r = pieces.position(root, corner[c[2]]);
-    gradient -= value[corner[i]] * (q - p).cross(r - p);
-  }
-  return gradient;
-}
-
-Vec3f unit(const Vec3d& direction, const Vec3d& otherwise) {
-  const double length = direction.norm();
-  if (length > 0 && std::isfinite(length)) return (direction / length).cast<float>();
-  const double other = otherwise.norm();
-  return other > 0 ? Vec3f((otherwise / other).cast<float>()) : Vec3f::UnitZ();
-}
+/// New vertices where rounding left a tet without volume: they are moved towards the middle of their edges, from
+/// round to round farther, until every tet is positive.
+constexpr std::array<double, 3> pulled_to = {0.1, 0.3, 0.5};
 
 } // namespace
 
@@ -156,59 +136,64 @@ GroupCut subdivided(const Pieces& pieces, const TetMesh& root, const Boundary& b
 
   // Place the new vertices.
   const std::size_t count = edges.count();
-  result.added.resize(count);
-  result.added_position.resize(count);
-  result.added_normal.resize(count);
-  result.on_section.resize(old_on.size());
+  SectionVertices vertices{std::vector<AddedVertex>(count), std::vector<Vec3d>(count), std::move(old_on)};
+  std::vector<double> fraction(count);
+  const auto place = [&](std::size_t i) {
+    const Vec3d &from = pieces.position(root, edges.low(i)), &to = pieces.position(root, edges.high(i));
+    vertices.position[i] = from + fraction[i] * (to - from);
+  };
   parallel_for(count, edges_per_block, [&](std::size_t i) {
     const VertexId a = edges.low(i), b = edges.high(i);
-    const Vec3d &from = pieces.position(root, a), &to = pieces.position(root, b);
-    const double t =
-        zero_on_edge(field.level_set, group.placement, from, to, field.value[a], field.value[b], field.snap);
-    result.added[i] = {a, b, cut};
-    result.added_position[i] = from + t * (to - from);
+    vertices.added[i] = {a, b, cut};
+    fraction[i] = zero_on_edge(field.level_set, group.placement, pieces.position(root, a), pieces.position(root, b),
+                               field.value[a], field.value[b], field.distance_kept(field.value[a], field.value[b]));
+    place(i);
   });
 
-  // Directions: of the level set where there is one, else of the interpolation, weighted by the tets' volumes.
-  const auto across_edge = [&](std::size_t i) {
-    const Vec3d along = pieces.position(root, edges.high(i)) - pieces.position(root, edges.low(i));
-    return Vec3d(field.value[edges.low(i)] < 0 ? along : Vec3d(-along));
+  const auto corners_of = [&](std::size_t i, const Pattern& pattern) {
+    const Corners& corner = crossed[i].corner(pieces, root);
+    std::array<VertexId, 8> id;
+    for (int k = 0; k < 4; ++k) {
+      id[k] = corner[pattern.corner[k]];
+      id[4 + k] = made[i][k];
+    }
+    return id;
   };
-  if (field.level_set) {
-    const auto direction = [&](const Vec3d& x) {
-      return Vec3d(group.placement.rotation.transpose() * field.level_set->gradient(group.placement(x)));
-    };
-    parallel_for(count, edges_per_block, [&](std::size_t i) {
-      result.added_normal[i] = unit(direction(result.added_position[i]), across_edge(i));
-    });
-    parallel_for(old_on.size(), edges_per_block, [&](std::size_t i) {
-      result.on_section[i] = {old_on[i], cut, unit(direction(pieces.position(root, old_on[i])), Vec3d::UnitZ())};
-    });
-  } else {
-    std::vector<Vec3d> of_tet(crossed.size()), of_edge(count, Vec3d::Zero()), of_old(old_on.size(), Vec3d::Zero());
+  for (std::size_t round = 0;; ++round) {
+    std::vector<std::uint8_t> flat(crossed.size(), 0);
+    std::atomic<bool> any = false;
     parallel_for(crossed.size(), tets_per_block, [&](std::size_t i) {
-      of_tet[i] = weighted_gradient(pieces, root, crossed[i].corner(pieces, root), field.value);
+      const Pattern& pattern = pattern_of(crossed[i].corner(pieces, root));
+      const std::array<VertexId, 8> id = corners_of(i, pattern);
+      const auto at = [&](std::uint8_t local) -> const Vec3d& {
+        return local < 4 ? pieces.position(root, id[local]) : vertices.position[id[local] - first_added];
+      };
+      split_tet(pattern, id, [&](bool, const LocalTet& local) {
+        if (orientation(at(local[0]), at(local[1]), at(local[2]), at(local[3])) <= 0) flat[i] = 1;
+      });
+      if (flat[i]) any = true;
     });
-    const auto add_to_old = [&](const Corners& corner, const Vec3d& gradient) {
-      for (const VertexId v : corner)
-        if (sides.state[v] == state_on)
-          if (const auto at = std::lower_bound(old_on.begin(), old_on.end(), v); at != old_on.end() && *at == v)
-            of_old[at - old_on.begin()] += gradient;
-    };
+    if (!any) break;
+    if (round == pulled_to.size())
+      throw SolverFailure("cut: it passes through tets that are too thin for the precision of numbers; cut with a "
+                          "larger snap, here and in the cuts before");
     for (std::size_t i = 0; i < crossed.size(); ++i) {
-      const Corners& corner = crossed[i].corner(pieces, root);
-      const Pattern& pattern = pattern_of(corner);
-      for (int e = 0; e < edges_of(pattern).count; ++e) of_edge[made[i][e] - first_added] += of_tet[i];
-      if (pattern.on > 0) add_to_old(corner, of_tet[i]);
+      if (!flat[i]) continue;
+      for (int e = 0; e < edges_of(pattern_of(crossed[i].corner(pieces, root))).count; ++e) {
+        const std::size_t row = made[i][e] - first_added;
+        fraction[row] = std::clamp(fraction[row], pulled_to[round], 1 - pulled_to[round]);
+        place(row);
+      }
     }
-    for (const SectionTet& tet : section) {
-      const Corners& corner = tet.tet.corner(pieces, root);
-      add_to_old(corner, weighted_gradient(pieces, root, corner, field.value));
-    }
-    for (std::size_t i = 0; i < count; ++i) result.added_normal[i] = unit(of_edge[i], across_edge(i));
-    for (std::size_t i = 0; i < old_on.size(); ++i)
-      result.on_section[i] = {old_on[i], cut, unit(of_old[i], Vec3d::UnitZ())};
   }
+
+  SectionDirections directions =
+      section_directions(pieces, root, group, sides, field, vertices, made, section, first_added);
+  for (std::size_t i = 0; i < vertices.old.size(); ++i)
+    result.on_section.push_back({vertices.old[i], cut, directions.old[i]});
+  result.added = std::move(vertices.added);
+  result.added_position = std::move(vertices.position);
+  result.added_normal = std::move(directions.added);
 
   // Cut tets that stay whole go to their side in order; then what the crossed ones become; then root tets that must
   // carry a section face.
@@ -253,11 +238,7 @@ GroupCut subdivided(const Pieces& pieces, const TetMesh& root, const Boundary& b
     const Tags tags = tags_of(tet, pieces, boundary);
     const TetId in = tet.whole ? TetId(tet.index) : pieces.piece[tet.piece].cut[tet.index].root;
     const auto mask = point_masks(pattern);
-    std::array<VertexId, 8> id;
-    for (int k = 0; k < 4; ++k) {
-      id[k] = corner[pattern.corner[k]];
-      id[4 + k] = made[i][k];
-    }
+    const std::array<VertexId, 8> id = corners_of(i, pattern);
     const std::uint32_t row = row_of_piece[tet.piece];
     std::array<CutTet*, 2> out = {result.below[row].data() + offset[i][0], result.above[row].data() + offset[i][1]};
     split_tet(pattern, id, [&](bool above, const LocalTet& local) {

@@ -2,7 +2,6 @@
 // The second half of a cut: new vertices, the halves' tets and the tags of their faces. Not part of the public face
 // of this module.
 #include "volume/cut/classify.h"
-#include "volume/cut/level_set.h"
 
 namespace pith {
 
@@ -18,13 +17,10 @@ struct GroupCut {
   std::size_t tets_cut = 0;
 };
 
-struct GroupField {
-  std::span<const double> value;       ///< by vertex id
-  const LevelSet* level_set = nullptr; ///< null: the values' linear interpolation is the field
-  double snap = 0;                     ///< new vertices keep this fraction from the ends of their edges
-};
-
-/// `first_added`: id of the first vertex that this cut adds.
+/// `first_added`: id of the first vertex that this cut adds. New vertices lie at the field's zeros, but keep the snap
+/// from the ends of their edges; where rounding would leave a tet without volume (tiny tets that many cuts have
+/// made), they move along their edge until all volumes are positive, by the exact predicate. Throws SolverFailure
+/// when none are.
 GroupCut subdivided(const Pieces& pieces, const TetMesh& root, const Boundary& boundary, const PieceGroup& group,
                     const Sides& sides, const GroupField& field, VertexId first_added);
 

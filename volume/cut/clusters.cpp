@@ -1,0 +1,85 @@
+#include "volume/cut/clusters.h"
+
+#include "volume/base/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pith {
+namespace {
+
+constexpr std::size_t tets_per_cluster = 256;
+
+/// Spreads the lowest 21 bits of x to every third bit.
+std::uint64_t every_third_bit(std::uint64_t x) {
+  x &= 0x1fffff;
+  x = (x | x << 32) & 0x1f00000000ffff;
+  x = (x | x << 16) & 0x1f0000ff0000ff;
+  x = (x | x << 8) & 0x100f00f00f00f00f;
+  x = (x | x << 4) & 0x10c30c30c30c30c3;
+  return (x | x << 2) & 0x1249249249249249;
+}
+
+} // namespace
+
+TetClusters clusters_of(const TetMesh& root) {
+  TetClusters result;
+  const std::size_t count = root.tet_count();
+  const Box box = bounds_of(root);
+  const double cells = 1023 / std::max((box.high - box.low).maxCoeff(), 1e-300);
+  std::vector<std::pair<std::uint64_t, TetId>> order(count);
+  parallel_for(count, 16384, [&](std::size_t t) {
+    const Vec3d at = cells * (barycenter(root, TetId(t)) - box.low);
+    const auto bits = [&](int axis) {
+      return every_third_bit(static_cast<std::uint64_t>(std::clamp(at[axis], 0.0, 1023.0)));
+    };
+    order[t] = {bits(0) | bits(1) << 1 | bits(2) << 2, TetId(t)};
+  });
+  std::sort(order.begin(), order.end());
+
+  PerVertex<double> reach(root.vertex_count(), 0.0); // the longest edge at each vertex
+  for (const auto& corner : root.corner)
+    for (int i = 0; i < 4; ++i)
+      for (int j = i + 1; j < 4; ++j) {
+        const double length = (root.position[corner[i]] - root.position[corner[j]]).norm();
+        reach[corner[i]] = std::max(reach[corner[i]], length);
+        reach[corner[j]] = std::max(reach[corner[j]], length);
+      }
+
+  result.tet.resize(count);
+  result.cluster.resize(count);
+  for (std::size_t begin = 0; begin < count; begin += tets_per_cluster)
+    result.begin.push_back(static_cast<std::uint32_t>(begin));
+  const std::size_t clusters = result.begin.size();
+  result.begin.push_back(static_cast<std::uint32_t>(count));
+  result.ball.resize(clusters);
+  parallel_for(clusters, 64, [&](std::size_t c) {
+    const auto first = result.tet.begin() + result.begin[c], last = result.tet.begin() + result.begin[c + 1];
+    Box around;
+    for (std::size_t i = result.begin[c]; i < result.begin[c + 1]; ++i) {
+      result.tet[i] = order[i].second;
+      result.cluster[order[i].second] = static_cast<std::uint32_t>(c);
+      for (const VertexId v : root.corner[order[i].second]) around.add(root.position[v]);
+    }
+    std::sort(first, last);
+    TetClusters::Ball& ball = result.ball[c];
+    ball = {around.center(), 0};
+    for (auto t = first; t != last; ++t)
+      for (const VertexId v : root.corner[*t])
+        ball.radius = std::max(ball.radius, (root.position[v] - ball.center).norm() + reach[v]);
+    ball.radius *= 1 + 1e-9;
+  });
+  return result;
+}
+
+std::vector<std::int8_t> sides_of_clusters(const TetClusters& clusters, const LevelSet& level_set,
+                                           const Rigid& placement) {
+  std::vector<std::int8_t> side(clusters.count());
+  parallel_for(clusters.count(), 256, [&](std::size_t c) {
+    const TetClusters::Ball& ball = clusters.ball[c];
+    side[c] = static_cast<std::int8_t>(level_set.side_of_ball(placement(ball.center), ball.radius));
+  });
+  return side;
+}
+
+} // namespace pith
