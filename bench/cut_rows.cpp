@@ -29,6 +29,7 @@ Measured kiwi(const Settings& settings) {
 
   const Pieces whole = whole_piece(root);
   Pieces pieces;
+  Cutter cutter(root, boundary);
   std::size_t triangles = 0, tets_cut = 0;
   double cut_alone = 0;
   const int times = settings.times(101);
@@ -36,7 +37,7 @@ Measured kiwi(const Settings& settings) {
     return median_seconds(
         times, [&] { pieces = whole; },
         [&] {
-          tets_cut = cut_by_values(pieces, root, boundary, value, field.get()).tets_cut;
+          tets_cut = cutter.cut_by_values(pieces, value, field.get()).tets_cut;
           if (!surfaces) return;
           triangles = 0;
           for (std::uint32_t p = 0; p < pieces.piece.size(); ++p)
@@ -59,12 +60,13 @@ Measured sphere_1m(const Settings& settings) {
   field->values({root.position.data(), root.position.size()}, value);
   const Pieces whole = whole_piece(root);
   Pieces pieces;
+  Cutter cutter(root, boundary);
   std::size_t tets_cut = 0;
   const auto time_with = [&](int threads) {
     const ThreadLimit limit(threads);
     return median_seconds(
         settings.times(21), [&] { pieces = whole; },
-        [&] { tets_cut = cut_by_values(pieces, root, boundary, value, field.get()).tets_cut; });
+        [&] { tets_cut = cutter.cut_by_values(pieces, value, field.get()).tets_cut; });
   };
   const double all = time_with(0), one = time_with(1);
   return {1e3 * all, fmt::format("{} tets, {} cut; 1 thread {:.2f} ms", root.tet_count(), tets_cut, 1e3 * one)};

@@ -77,10 +77,24 @@ inline std::uint8_t file_tet(const Sides& sides, const TetReference& tet, const 
   return side & 7;
 }
 
-/// Whole tets come in the order of clusters; all orders must give the same cut.
-void sort_by_tet(std::vector<TetReference>& tets, std::size_t begin) {
-  const auto before = [](const TetReference& a, const TetReference& b) { return a.index < b.index; };
-  if (!std::is_sorted(tets.begin() + begin, tets.end(), before)) std::sort(tets.begin() + begin, tets.end(), before);
+/// Cut tets by (piece, row), then root tets.
+bool before(const TetReference& a, const TetReference& b) {
+  if (a.whole != b.whole) return b.whole;
+  return a.whole || a.piece == b.piece ? a.index < b.index : a.piece < b.piece;
+}
+bool same_tet(const TetReference& a, const TetReference& b) { return !before(a, b) && !before(b, a); }
+
+void count_tet(Sides& sides, std::uint32_t piece, std::uint8_t side, int by) {
+  for (int half = 0; half < 2; ++half)
+    if (side >> half & 1) sides.count[piece][half] += static_cast<std::uint32_t>(by);
+}
+
+void find_seen(const PieceGroup& group, Sides& sides) {
+  sides.seen = group.seen_far;
+  sides.seen.resize(sides.count.size(), 0);
+  for (const std::uint32_t p : group.piece)
+    for (int half = 0; half < 2; ++half)
+      if (sides.count[p][half] > 0) sides.seen[p] |= static_cast<std::uint8_t>(1 << half);
 }
 
 /// Vertices of crossed tets that a zero comes too close to.
@@ -108,19 +122,14 @@ std::vector<VertexId> snapped_vertices(const Pieces& pieces, const TetMesh& root
   return all;
 }
 
-} // namespace
-
-void classify(const Pieces& pieces, const TetMesh& root, const PieceGroup& group, Sides& sides) {
-  sides.crossed.clear();
-  sides.touching.clear();
-  sides.seen = group.seen_far;
-  sides.seen.resize(pieces.piece.size(), 0);
-
+/// The group's cut tets, all of them.
+void classify_cut(const Pieces& pieces, const PieceGroup& group, Sides& sides) {
   sides.cut.resize(group.piece.size());
   for (std::size_t row = 0; row < group.piece.size(); ++row) {
     const std::uint32_t p = group.piece[row];
     const std::vector<CutTet>& cut = pieces.piece[p].cut;
     std::vector<std::uint8_t>& side = sides.cut[row];
+    for (const std::uint8_t s : side) count_tet(sides, p, s, -1);
     side.resize(cut.size());
     std::vector<BlockFindings> found((cut.size() + tets_per_block - 1) / tets_per_block);
     parallel_blocks(cut.size(), tets_per_block, [&](std::size_t begin, std::size_t end) {
@@ -131,23 +140,26 @@ void classify(const Pieces& pieces, const TetMesh& root, const PieceGroup& group
                                       found[begin / tets_per_block]);
       }
     });
-    for (const std::uint8_t s : side) sides.seen[p] |= s & 3;
+    for (const std::uint8_t s : side) count_tet(sides, p, s, 1);
     for (const BlockFindings& block : found)
       append(sides.crossed, block.crossed), append(sides.touching, block.touching);
   }
+}
 
+/// The whole root tets that the group looks at.
+void classify_whole(const Pieces& pieces, const TetMesh& root, const PieceGroup& group, Sides& sides) {
   const std::size_t count = group.everything ? root.tet_count() : group.whole.size();
   sides.whole.resize(count);
   std::vector<BlockFindings> found((count + tets_per_block - 1) / tets_per_block);
   parallel_blocks(count, tets_per_block, [&](std::size_t begin, std::size_t end) {
     BlockFindings& here = found[begin / tets_per_block];
-    std::uint32_t last = Pieces::was_cut; // bits are gathered for a run of tets of one piece
-    std::uint8_t bits = 0;
+    std::uint32_t last = Pieces::was_cut; // tets are counted for a run of one piece
+    std::array<std::uint32_t, 2> seen = {0, 0};
     const auto flush = [&] {
       if (last == Pieces::was_cut) return;
-      std::atomic_ref<std::uint8_t> seen(sides.seen[last]);
-      if ((seen.load(std::memory_order_relaxed) & bits) != bits) seen.fetch_or(bits, std::memory_order_relaxed);
-      bits = 0;
+      for (int half = 0; half < 2; ++half)
+        std::atomic_ref<std::uint32_t>(sides.count[last][half]).fetch_add(seen[half], std::memory_order_relaxed);
+      seen = {0, 0};
     };
     for (std::size_t i = begin; i < end; ++i) {
       const TetId t = group.everything ? TetId(i) : group.whole[i];
@@ -162,25 +174,111 @@ void classify(const Pieces& pieces, const TetMesh& root, const PieceGroup& group
       }
       const std::uint8_t side = file_tet(sides, {p, t.value, true}, root.corner[t], here);
       sides.whole[i] = side;
-      bits |= side & 3;
+      seen[0] += side & 1;
+      seen[1] += side >> 1 & 1;
     }
     flush();
   });
   const std::size_t crossed = sides.crossed.size(), touching = sides.touching.size();
   for (const BlockFindings& block : found)
     append(sides.crossed, block.crossed), append(sides.touching, block.touching);
-  sort_by_tet(sides.crossed, crossed);
-  sort_by_tet(sides.touching, touching);
+  // Clusters come in an order of their own; every order must give the same cut.
+  for (auto [tets, begin] : {std::pair(&sides.crossed, crossed), std::pair(&sides.touching, touching)})
+    if (!std::is_sorted(tets->begin() + begin, tets->end(), before))
+      std::sort(tets->begin() + begin, tets->end(), before);
 }
 
-Sides sides_of(const Pieces& pieces, const TetMesh& root, const PieceGroup& group, const GroupField& field) {
+void classify(const Pieces& pieces, const TetMesh& root, const PieceGroup& group, Sides& sides) {
+  sides.crossed.clear();
+  sides.touching.clear();
+  sides.cut.clear();
+  sides.count.assign(pieces.piece.size(), {0, 0});
+  classify_cut(pieces, group, sides);
+  classify_whole(pieces, root, group, sides);
+}
+
+/// Adds the whole tets around snapped vertices to the touching ones, where they are neither crossed nor known to
+/// touch.
+void add_touching(const Pieces& pieces, const PieceGroup& group, const VertexTets& around,
+                  std::span<const VertexId> snapped, Sides& sides) {
+  std::vector<TetReference> added;
+  for (const VertexId v : snapped) {
+    if (v >= pieces.root_vertex_count) continue;
+    for (const TetId t : around[v]) {
+      const std::uint32_t p = pieces.label[t];
+      if (p == Pieces::was_cut || !std::binary_search(group.piece.begin(), group.piece.end(), p)) continue;
+      if (sides.whole[group.row_of(t)] != side_crossed) added.push_back({p, t.value, true});
+    }
+  }
+  std::sort(added.begin(), added.end(), before);
+  std::vector<TetReference> all;
+  std::merge(sides.touching.begin(), sides.touching.end(), added.begin(), added.end(), std::back_inserter(all),
+             before);
+  all.erase(std::unique(all.begin(), all.end(), same_tet), all.end());
+  sides.touching = std::move(all);
+}
+
+} // namespace
+
+std::size_t PieceGroup::row_of(TetId tet) const {
+  if (everything) return tet;
+  auto begin = whole.begin(), end = whole.end();
+  if (clusters) {
+    const std::uint32_t c = clusters->cluster[tet];
+    end = begin + first_row[c + 1];
+    begin += first_row[c];
+  }
+  return static_cast<std::size_t>(std::lower_bound(begin, end, tet) - whole.begin());
+}
+
+void refile(const Pieces& pieces, const TetMesh& root, const PieceGroup& group, Sides& sides) {
+  std::vector<TetReference> near;
+  near.reserve(sides.crossed.size() + sides.touching.size());
+  std::merge(sides.crossed.begin(), sides.crossed.end(), sides.touching.begin(), sides.touching.end(),
+             std::back_inserter(near), before);
+  BlockFindings found;
+  std::size_t row_of_piece = 0;
+  for (const TetReference& tet : near) {
+    while (!tet.whole && group.piece[row_of_piece] != tet.piece) ++row_of_piece;
+    std::uint8_t& side = tet.whole ? sides.whole[group.row_of(TetId(tet.index))] : sides.cut[row_of_piece][tet.index];
+    const std::uint8_t now = file_tet(sides, tet, tet.corner(pieces, root), found);
+    if (now == side) continue;
+    count_tet(sides, tet.piece, side, -1);
+    count_tet(sides, tet.piece, side = now, 1);
+  }
+  sides.crossed = std::move(found.crossed);
+  sides.touching = std::move(found.touching);
+  find_seen(group, sides);
+}
+
+Sides sides_of(const Pieces& pieces, const TetMesh& root, const PieceGroup& group, const GroupField& field,
+               const VertexTets* around) {
   Sides sides;
   find_states(field, sides.state);
   classify(pieces, root, group, sides);
-  const std::vector<VertexId> snapped = snapped_vertices(pieces, root, sides, field);
-  if (snapped.empty()) return sides;
+  std::vector<VertexId> snapped = snapped_vertices(pieces, root, sides, field);
+  std::sort(snapped.begin(), snapped.end());
+  snapped.erase(std::unique(snapped.begin(), snapped.end()), snapped.end());
   for (const VertexId v : snapped) sides.state[v] = state_on;
-  classify(pieces, root, group, sides);
+  if (snapped.empty()) {
+    find_seen(group, sides);
+  } else if (around) {
+    const auto first_whole = [](std::vector<TetReference>& tets) {
+      return std::find_if(tets.begin(), tets.end(), [](const TetReference& tet) { return tet.whole; });
+    };
+    std::vector<TetReference> crossed(first_whole(sides.crossed), sides.crossed.end()),
+        touching(first_whole(sides.touching), sides.touching.end());
+    sides.crossed.clear();
+    sides.touching.clear();
+    classify_cut(pieces, group, sides);
+    append(sides.crossed, crossed);
+    append(sides.touching, touching);
+    add_touching(pieces, group, *around, snapped, sides);
+    refile(pieces, root, group, sides);
+  } else {
+    classify(pieces, root, group, sides);
+    find_seen(group, sides);
+  }
   return sides;
 }
 

@@ -21,6 +21,10 @@ struct PieceGroup {
   const TetClusters* clusters = nullptr;
   std::vector<std::int8_t> cluster_side; ///< by cluster: −1 or 1; 0: its tets are looked at
   std::vector<std::uint8_t> seen_far;    ///< by piece number, as Sides::seen: of whole tets in clusters of one side
+  std::vector<std::uint32_t> first_row;  ///< by cluster: its first row of `whole`; one more than there are clusters
+
+  /// Where a whole tet that is looked at stands in Sides::whole.
+  std::size_t row_of(TetId tet) const;
 
   /// −1 or 1 for a tet inside a root tet that the level set does not come near, else 0.
   int far_side(TetId root) const { return clusters ? cluster_side[clusters->cluster[root]] : 0; }
@@ -46,6 +50,7 @@ struct Sides {
   std::vector<TetReference> crossed;          ///< cut tets by (piece, row), then root tets, ascending
   std::vector<TetReference> touching;         ///< other tets with a corner on; the same order
   std::vector<std::uint8_t> seen;             ///< by piece number: bit 0 below, bit 1 above; for the group's pieces
+  std::vector<std::array<std::uint32_t, 2>> count; ///< by piece number: tets with something below, above; near ones
 
   int pattern_code(const std::array<VertexId, 4>& corner) const {
     return state[corner[0]] + 3 * state[corner[1]] + 9 * state[corner[2]] + 27 * state[corner[3]];
@@ -74,8 +79,10 @@ struct GroupField {
 
 /// Classifies all tets of the group. A vertex to which a zero on some edge comes closer than the snap counts as on: a
 /// set that depends on the values alone, not on the order of tets. Tets with all corners on are filed under
-/// `side_on`. Throws InvalidInput where a value is not finite.
-Sides sides_of(const Pieces& pieces, const TetMesh& root, const PieceGroup& group, const GroupField& field);
+/// `side_on`. `around`: the root's, or null: then a second pass finds the tets at snapped vertices. Throws
+/// InvalidInput where a value is not finite.
+Sides sides_of(const Pieces& pieces, const TetMesh& root, const PieceGroup& group, const GroupField& field,
+               const VertexTets* around);
 
 /// Vertices that count as on can pinch a half: it would hang together there by a vertex or an edge alone. Such
 /// vertices are put back on the side of their value (zero: above), and the tets classified again, until the halves of
@@ -83,7 +90,7 @@ Sides sides_of(const Pieces& pieces, const TetMesh& root, const PieceGroup& grou
 void part_pinches(const Pieces& pieces, const TetMesh& root, const PieceGroup& group, const GroupField& field,
                   Sides& sides);
 
-/// Files all tets of the group anew by `sides.state`.
-void classify(const Pieces& pieces, const TetMesh& root, const PieceGroup& group, Sides& sides);
+/// Files the crossed and touching tets anew by `sides.state`. Precondition: no other tets have a corner on.
+void refile(const Pieces& pieces, const TetMesh& root, const PieceGroup& group, Sides& sides);
 
 } // namespace pith

@@ -103,6 +103,9 @@ void take_near_tets(Groups& groups, std::uint32_t g, const Pieces& pieces, const
     }
   });
   for (const std::vector<TetId>& part : near) group.whole.insert(group.whole.end(), part.begin(), part.end());
+  group.first_row.assign(clusters.count() + 1, 0);
+  for (const TetId t : group.whole) ++group.first_row[clusters.cluster[t] + 1];
+  for (std::size_t c = 0; c < clusters.count(); ++c) group.first_row[c + 1] += group.first_row[c];
 }
 
 /// The vertices of all tets that are looked at; empty: all vertices of the pieces are.
@@ -217,6 +220,7 @@ struct Cutter::Parts {
   const TetMesh& root;
   const Boundary& boundary;
   std::optional<TetClusters> clusters; ///< none: every tet is looked at
+  std::optional<VertexTets> around;    ///< with the clusters
   double diagonal;
   std::vector<double> value; ///< memory that is used again
 
@@ -241,7 +245,7 @@ struct Cutter::Parts {
                        std::max(options.snap, smallest_snap), std::numeric_limits<double>::infinity()};
       if (level_set && level_set->linear() && options.snap <= largest_flat_snap)
         field.snap_distance = flatness * diagonal;
-      sides[g] = sides_of(pieces, root, group, field);
+      sides[g] = sides_of(pieces, root, group, field, around ? &*around : nullptr);
       if (options.manifold) part_pinches(pieces, root, group, field, sides[g]);
       cuts[g] = subdivided(pieces, root, boundary, group, sides[g], field, VertexId(next));
       next += cuts[g].added.size();
@@ -290,7 +294,8 @@ struct Cutter::Parts {
 };
 
 Cutter::Cutter(const TetMesh& root, const Boundary& boundary)
-    : parts_(new Parts{root, boundary, clusters_of(root), bounds_of(root).diagonal(), {}}) {}
+    : parts_(
+          new Parts{root, boundary, clusters_of(root), tets_around_vertices(root), bounds_of(root).diagonal(), {}}) {}
 Cutter::~Cutter() = default;
 Cutter::Cutter(Cutter&&) noexcept = default;
 
@@ -307,14 +312,14 @@ Cutter::Cutter(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 CutResult cut(Pieces& pieces, const TetMesh& root, const Boundary& boundary, const LevelSet& level_set,
               const CutOptions& options) {
   const double diagonal = level_set.linear() ? bounds_of(root).diagonal() : 0;
-  return Cutter(std::unique_ptr<Cutter::Parts>(new Cutter::Parts{root, boundary, {}, diagonal, {}}))
+  return Cutter(std::unique_ptr<Cutter::Parts>(new Cutter::Parts{root, boundary, {}, {}, diagonal, {}}))
       .cut(pieces, level_set, options);
 }
 
 CutResult cut_by_values(Pieces& pieces, const TetMesh& root, const Boundary& boundary, std::span<const double> value,
                         const LevelSet* level_set, const CutOptions& options) {
   const double diagonal = level_set && level_set->linear() ? bounds_of(root).diagonal() : 0;
-  return Cutter(std::unique_ptr<Cutter::Parts>(new Cutter::Parts{root, boundary, {}, diagonal, {}}))
+  return Cutter(std::unique_ptr<Cutter::Parts>(new Cutter::Parts{root, boundary, {}, {}, diagonal, {}}))
       .cut_by_values(pieces, value, level_set, options);
 }
 

@@ -172,7 +172,8 @@ private:
     if (!below || !above) refuse_miss();
     pieces_ = whole_piece(mesh_);
     try {
-      tets_cut_ = cut_by_values(pieces_, mesh_, boundary_, value_, &level_set_, {.only = {}, .snap = least_fraction, .manifold = false})
+      tets_cut_ = cut_by_values(pieces_, mesh_, boundary_, value_, &level_set_,
+                                {.only = {}, .snap = least_fraction, .manifold = false})
                       .tets_cut;
     } catch (const InvalidInput&) { // it only touches the regions
       refuse_miss();

@@ -182,7 +182,7 @@ void part_pinches(const Pieces& pieces, const TetMesh& root, const PieceGroup& g
     const std::vector<VertexId> pinched = PinchSearch(pieces, root, sides).pinched();
     if (pinched.empty()) return;
     for (const VertexId v : pinched) sides.state[v] = field.value[v] < 0 ? state_below : state_above;
-    classify(pieces, root, group, sides);
+    refile(pieces, root, group, sides);
   }
 }
 

@@ -2,8 +2,8 @@
 // of Turk, O'Brien: Shape transformation using variational implicit functions, 1999, with points beside the curve.
 //
 // Departure: a spline alone may have zeros far from the stroke. It is only allowed to move the signed distance to the
-// stroke by a small amount, and only near the stroke, so that the side is right everywhere else. Its kernel is r³, not the
-// plane's r² log r: the curve is as smooth, and a square root costs a fifth of a logarithm.
+// stroke by a small amount, and only near the stroke, so that the side is right everywhere else. Its kernel is r³,
+// not the plane's r² log r: the curve is as smooth, and a square root costs a fifth of a logarithm.
 #include "volume/base/error.h"
 #include "volume/cut/divider.h"
 #include "volume/cut/level_set.h"

@@ -159,42 +159,6 @@ GroupCut subdivided(const Pieces& pieces, const TetMesh& root, const Boundary& b
     }
     return id;
   };
-  for (std::size_t round = 0;; ++round) {
-    std::vector<std::uint8_t> flat(crossed.size(), 0);
-    std::atomic<bool> any = false;
-    parallel_for(crossed.size(), tets_per_block, [&](std::size_t i) {
-      const Pattern& pattern = pattern_of(crossed[i].corner(pieces, root));
-      const std::array<VertexId, 8> id = corners_of(i, pattern);
-      const auto at = [&](std::uint8_t local) -> const Vec3d& {
-        return local < 4 ? pieces.position(root, id[local]) : vertices.position[id[local] - first_added];
-      };
-      split_tet(pattern, id, [&](bool, const LocalTet& local) {
-        if (orientation(at(local[0]), at(local[1]), at(local[2]), at(local[3])) <= 0) flat[i] = 1;
-      });
-      if (flat[i]) any = true;
-    });
-    if (!any) break;
-    if (round == pulled_to.size())
-      throw SolverFailure("cut: it passes through tets that are too thin for the precision of numbers; cut with a "
-                          "larger snap, here and in the cuts before");
-    for (std::size_t i = 0; i < crossed.size(); ++i) {
-      if (!flat[i]) continue;
-      for (int e = 0; e < edges_of(pattern_of(crossed[i].corner(pieces, root))).count; ++e) {
-        const std::size_t row = made[i][e] - first_added;
-        fraction[row] = std::clamp(fraction[row], pulled_to[round], 1 - pulled_to[round]);
-        place(row);
-      }
-    }
-  }
-
-  SectionDirections directions =
-      section_directions(pieces, root, group, sides, field, vertices, made, section, first_added);
-  for (std::size_t i = 0; i < vertices.old.size(); ++i)
-    result.on_section.push_back({vertices.old[i], cut, directions.old[i]});
-  result.added = std::move(vertices.added);
-  result.added_position = std::move(vertices.position);
-  result.added_normal = std::move(directions.added);
-
   // Cut tets that stay whole go to their side in order; then what the crossed ones become; then root tets that must
   // carry a section face.
   result.below.resize(result.piece.size());
@@ -231,6 +195,14 @@ GroupCut subdivided(const Pieces& pieces, const TetMesh& root, const Boundary& b
     result.below[r].resize(size[r][0]);
     result.above[r].resize(size[r][1]);
   }
+  std::vector<std::uint8_t> flat(crossed.size(), 0); // crossed tets of which rounding left a part without volume
+  std::atomic<bool> any_flat = false;
+  const auto positive = [&](const std::array<VertexId, 8>& id, const LocalTet& local) {
+    const auto at = [&](int k) -> const Vec3d& {
+      return local[k] < 4 ? pieces.position(root, id[local[k]]) : vertices.position[id[local[k]] - first_added];
+    };
+    return orientation(at(0), at(1), at(2), at(3)) > 0;
+  };
   parallel_for(crossed.size(), tets_per_block, [&](std::size_t i) {
     const TetReference& tet = crossed[i];
     const Corners& corner = tet.corner(pieces, root);
@@ -243,6 +215,7 @@ GroupCut subdivided(const Pieces& pieces, const TetMesh& root, const Boundary& b
     std::array<CutTet*, 2> out = {result.below[row].data() + offset[i][0], result.above[row].data() + offset[i][1]};
     split_tet(pattern, id, [&](bool above, const LocalTet& local) {
       CutTet& part = *out[above]++;
+      flat[i] |= !positive(id, local);
       part.root = in;
       for (int k = 0; k < 4; ++k) {
         part.corner[k] = id[local[k]];
@@ -258,7 +231,36 @@ GroupCut subdivided(const Pieces& pieces, const TetMesh& root, const Boundary& b
         }
       }
     });
+    if (flat[i]) any_flat = true;
   });
+
+  for (std::size_t round = 0; any_flat; ++round) {
+    if (round == pulled_to.size())
+      throw SolverFailure("cut: it passes through tets that are too thin for the precision of numbers; cut with a "
+                          "larger snap, here and in the cuts before");
+    for (std::size_t i = 0; i < crossed.size(); ++i)
+      for (int e = 0; flat[i] && e < edges_of(pattern_of(crossed[i].corner(pieces, root))).count; ++e) {
+        const std::size_t row = made[i][e] - first_added;
+        fraction[row] = std::clamp(fraction[row], pulled_to[round], 1 - pulled_to[round]);
+        place(row);
+      }
+    any_flat = false;
+    parallel_for(crossed.size(), tets_per_block, [&](std::size_t i) {
+      const Pattern& pattern = pattern_of(crossed[i].corner(pieces, root));
+      const std::array<VertexId, 8> id = corners_of(i, pattern);
+      flat[i] = 0;
+      split_tet(pattern, id, [&](bool, const LocalTet& local) { flat[i] |= !positive(id, local); });
+      if (flat[i]) any_flat = true;
+    });
+  }
+
+  SectionDirections directions =
+      section_directions(pieces, root, group, sides, field, vertices, made, section, first_added);
+  for (std::size_t i = 0; i < vertices.old.size(); ++i)
+    result.on_section.push_back({vertices.old[i], cut, directions.old[i]});
+  result.added = std::move(vertices.added);
+  result.added_position = std::move(vertices.position);
+  result.added_normal = std::move(directions.added);
 
   for (const TetReference& tet : crossed)
     if (tet.whole) result.opened.push_back(TetId(tet.index));
