@@ -89,6 +89,8 @@ public:
     for (std::size_t i = 0; i < recipe_.cuts.size(); ++i) {
       const CutStep& step = recipe_.cuts[i];
       const std::string at = "/cuts/" + std::to_string(i);
+      if (step.surface && step.surface->shape.empty()) input(step.surface->file, at + "/surface/file");
+      if (step.surface || step.depth || !step.join.empty()) continue;
       std::unique_ptr<LevelSet> level_set;
       try {
         level_set = level_set_of(step.shape, at);
@@ -103,9 +105,14 @@ public:
         level_set->values(corner, value);
         const bool below = std::any_of(value.begin(), value.end(), [](double v) { return v < 0; });
         const bool above = std::any_of(value.begin(), value.end(), [](double v) { return v > 0; });
-        // A small sphere may lie inside without touching the surface.
-        const auto* sphere = std::get_if<SphereCut>(&step.shape);
-        const bool inside = sphere && bounds_.low.cwiseMax(sphere->center).cwiseMin(bounds_.high) == sphere->center;
+        // What is closed may lie inside without touching the surface.
+        const auto within = [&](const Vec3d& x) { return bounds_.contains(x); };
+        bool inside = std::holds_alternative<SheetCut>(step.shape);
+        if (const auto* sphere = std::get_if<SphereCut>(&step.shape)) inside = within(sphere->center);
+        if (const auto* box = std::get_if<BoxCut>(&step.shape)) inside = within(box->center);
+        if (const auto* rod = std::get_if<CylinderCut>(&step.shape))
+          inside = rod->endless || within(0.5 * (rod->from + rod->to));
+        if (const auto* stroke = std::get_if<StrokeCut>(&step.shape)) inside = stroke->closed;
         if (!(below && above) && !inside)
           add(at, "passes by the surface, which spans " + box_text(), "move it so that it passes through");
       }

@@ -49,15 +49,65 @@ PiecePlacement placement_from(const JsonNode& node) {
   return result;
 }
 
-/// The one shape of a cut or a divide.
+BoxCut box_from(const JsonNode& node) {
+  node.object({"center", "size", "rotate"});
+  BoxCut result;
+  result.center = node.at("center").vector3();
+  result.size = node.at("size").vector3();
+  if (!(result.size.minCoeff() > 0)) node.at("size").fail("is not positive", "give three lengths in mm");
+  if (const auto rotate = node.find("rotate")) {
+    rotate->object({"axis", "angle"});
+    read_turn(*rotate, result.axis, result.angle);
+  }
+  return result;
+}
+
+CylinderCut cylinder_from(const JsonNode& node) {
+  node.object({"from", "to", "radius", "endless"});
+  CylinderCut result;
+  result.from = node.at("from").vector3();
+  result.to = node.at("to").vector3();
+  if (result.from == result.to) node.fail("has both ends at one place", "move one of them");
+  result.radius = node.at("radius").number(range::positive_mm);
+  if (const auto endless = node.find("endless")) result.endless = endless->boolean();
+  return result;
+}
+
+SheetCut sheet_from(const JsonNode& node) {
+  node.object({"points", "normals"});
+  SheetCut result;
+  result.point = node.at("points").points(1, "give points that the cut passes through");
+  result.normal = node.at("normals").points(1, "give a normal for each point");
+  if (result.normal.size() != result.point.size())
+    node.at("normals").fail("has " + std::to_string(result.normal.size()) + " entries for " +
+                                std::to_string(result.point.size()) + " points",
+                            "give one normal for each point");
+  return result;
+}
+
+/// Those of LevelSetShape; "surface", and in cuts "depth" and "join", may stand in their place.
+constexpr std::array shape_keys = {"plane", "sphere", "stroke", "box", "cylinder", "sheet"};
+
 LevelSetShape shape_from(const JsonNode& node) {
-  const int shapes = node.has("plane") + node.has("sphere") + node.has("stroke");
-  if (shapes != 1)
-    node.fail(shapes == 0 ? "has no shape" : "has more than one shape",
-              "give exactly one of \"plane\", \"sphere\" and \"stroke\"");
   if (const auto plane = node.find("plane")) return plane_from(*plane);
   if (const auto sphere = node.find("sphere")) return sphere_from(*sphere);
+  if (const auto box = node.find("box")) return box_from(*box);
+  if (const auto cylinder = node.find("cylinder")) return cylinder_from(*cylinder);
+  if (const auto sheet = node.find("sheet")) return sheet_from(*sheet);
   return stroke_from(node.at("stroke"));
+}
+
+/// Fails unless exactly one of the shapes is there.
+void check_one_shape(const JsonNode& node, const std::vector<std::string>& others) {
+  std::string all;
+  int shapes = 0;
+  std::vector<std::string> keys(shape_keys.begin(), shape_keys.end());
+  keys.insert(keys.end(), others.begin(), others.end());
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    shapes += node.has(keys[i].c_str());
+    all += (i == 0 ? "" : i + 1 < keys.size() ? ", " : " and ") + ("\"" + keys[i] + "\"");
+  }
+  if (shapes != 1) node.fail(shapes == 0 ? "has no shape" : "has more than one shape", "give exactly one of " + all);
 }
 
 } // namespace
@@ -91,7 +141,7 @@ void read_turn(const JsonNode& node, Vec3d& axis, double& angle) {
 }
 
 StrokeCut stroke_from(const JsonNode& node) {
-  node.object({"points", "view"});
+  node.object({"points", "view", "closed", "from", "to"});
   StrokeCut result;
   const JsonNode points = node.at("points");
   for (const JsonNode& point : points.items(2, "a stroke needs two points [u, v] or more"))
@@ -100,6 +150,14 @@ StrokeCut stroke_from(const JsonNode& node) {
                                  [&](const Vec2d& p) { return p != result.point.front(); });
   if (!moves) points.fail("stay at one place", "give two different points");
   result.view = view_from(node.at("view"));
+  if (const auto closed = node.find("closed")) result.closed = closed->boolean();
+  for (const char* key : {"from", "to"})
+    if (node.has(key) && !result.closed)
+      node.fail(std::string("has a \"") + key + "\", which only closed strokes have", "close it, or remove the key");
+  node.optional_number("from", result.from, range::any);
+  node.optional_number("to", result.to, range::any);
+  if (!(result.from < result.to))
+    node.fail("is scooped from where it ends", "give a \"from\" that is less than \"to\"");
   return result;
 }
 
@@ -120,15 +178,13 @@ View view_from(const JsonNode& node) {
 }
 
 DivideStep divide_from(const JsonNode& node) {
-  node.object({"plane", "sphere", "stroke", "surface", "only", "snap"});
+  node.object({"plane", "sphere", "stroke", "box", "cylinder", "sheet", "surface", "only", "snap"});
+  check_one_shape(node, {"surface"});
   DivideStep result;
-  if (const auto surface = node.find("surface")) {
-    if (node.has("plane") || node.has("sphere") || node.has("stroke"))
-      node.fail("has more than one shape", "give exactly one of \"plane\", \"sphere\", \"stroke\" and \"surface\"");
+  if (const auto surface = node.find("surface"))
     result.surface = surface_from(*surface);
-  } else {
+  else
     result.shape = shape_from(node);
-  }
   if (const auto only = node.find("only")) {
     const auto region_from = [](const JsonNode& entry) {
       return static_cast<std::int32_t>(entry.whole(0, 1'000'000, "name a region, from 0"));
@@ -147,9 +203,26 @@ DivideStep divide_from(const JsonNode& node) {
 }
 
 CutStep cut_from(const JsonNode& node) {
-  node.object({"plane", "sphere", "stroke", "keep", "spread", "snap", "only", "placements"});
+  node.object({"plane", "sphere", "stroke", "box", "cylinder", "sheet", "surface", "depth", "join", "keep", "spread",
+               "snap", "only", "placements"});
+  check_one_shape(node, {"surface", "depth", "join"});
   CutStep result;
-  result.shape = shape_from(node);
+  if (const auto join = node.find("join")) {
+    for (const char* key : {"keep", "spread", "snap", "only"})
+      if (node.has(key)) node.fail(std::string("joins pieces, for which \"") + key + "\" means nothing", "remove it");
+    result.join = join->points(2, "name the pieces to join by rest points in them");
+  } else if (const auto surface = node.find("surface")) {
+    result.surface = surface_from(*surface);
+  } else if (const auto depth = node.find("depth")) {
+    depth->object({"region", "value"});
+    result.depth.emplace();
+    int region = 0;
+    depth->optional_whole("region", region, 0, 1'000'000, "name a region, from 0");
+    result.depth->region = region;
+    result.depth->value = depth->at("value").number({0, 1, true, "between 0 and 1", "give a depth below the skin"});
+  } else {
+    result.shape = shape_from(node);
+  }
   if (const auto keep = node.find("keep")) result.keep = static_cast<Keep>(keep->choice({"both", "left", "right"}));
   node.optional_number("spread", result.spread, range::mm);
   node.optional_number("snap", result.snap, {0, 0.4, false, "0 to 0.4", "give a fraction of an edge"});
@@ -168,8 +241,17 @@ CutStep cut_from(const JsonNode& node) {
 }
 
 MoveStep move_from(const JsonNode& node) {
-  node.object({"piece", "translate", "rotate", "about"});
+  node.object({"piece", "translate", "rotate", "about", "explode", "drop"});
   MoveStep result;
+  if (node.has("explode") || node.has("drop")) {
+    if (node.has("explode") + node.has("drop") + node.has("piece") > 1 || node.has("translate") || node.has("rotate"))
+      node.fail("does more than one thing", "give \"explode\", \"drop\" or \"piece\", each in an entry of its own");
+    double value = 0;
+    node.optional_number("explode", value, range::any);
+    node.optional_number("drop", value, range::any);
+    (node.has("explode") ? result.explode : result.drop) = value;
+    return result;
+  }
   result.piece = node.at("piece").vector3();
   if (!node.has("translate") && !node.has("rotate")) node.fail("moves nothing", "add \"translate\" or \"rotate\"");
   if (const auto translate = node.find("translate")) result.translate = translate->vector3();

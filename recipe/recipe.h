@@ -106,9 +106,18 @@ struct DivideStep {
   double snap = 0.2;                    ///< DivideOptions::snap
 };
 
+/// Where a solid's depth (Fields::depth) has a value: peels a layer off. What is nearer to the skin is left.
+struct DepthCut {
+  std::int32_t region = 0;
+  double value = 0.5; ///< between 0 and 1
+};
+
 /// One cut. The shape is given in world space, where the pieces stand.
 struct CutStep {
   LevelSetShape shape;
+  std::optional<SurfaceSource> surface;   ///< in place of `shape`: a surface file as a knife; left is inside it
+  std::optional<DepthCut> depth;          ///< in place of `shape`
+  std::vector<Vec3d> join;                ///< in place of a cut: rest points in pieces that become one again
   Keep keep = Keep::both;
   double spread = 0;                      ///< mm by which the halves are moved apart afterwards
   double snap = 0.01;                     ///< CutOptions::snap
@@ -116,8 +125,11 @@ struct CutStep {
   std::vector<PiecePlacement> placements; ///< where pieces stood; those not named stay where earlier steps left them
 };
 
-/// Moves one piece: a turn about `about`, then a shift.
+/// Moves one piece: a turn about `about`, then a shift; or all pieces.
 struct MoveStep {
+  /// `explode`: every piece goes away from the middle of all by this part of its distance from it.
+  /// `drop`: every piece sinks or rises until its lowest point is on the plane z = this.
+  std::optional<double> explode, drop;
   Vec3d piece = Vec3d::Zero();     ///< a rest point in the piece
   Vec3d translate = Vec3d::Zero(); ///< mm
   Vec3d axis{0, 0, 1};             ///< of the turn, any length above 0

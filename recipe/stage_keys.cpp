@@ -17,9 +17,14 @@ KeyMaker& add(KeyMaker& maker, const LevelSetShape& shape) {
   }
   if (const auto* sphere = std::get_if<SphereCut>(&shape)) maker.add(sphere->center).add(sphere->radius);
   if (const auto* stroke = std::get_if<StrokeCut>(&shape)) {
-    maker.add(stroke->point);
+    maker.add(stroke->point).add(stroke->closed).add(stroke->from).add(stroke->to);
     add_view(maker, stroke->view);
   }
+  if (const auto* box = std::get_if<BoxCut>(&shape))
+    maker.add(box->center).add(box->size).add(box->axis).add(box->angle);
+  if (const auto* cylinder = std::get_if<CylinderCut>(&shape))
+    maker.add(cylinder->from).add(cylinder->to).add(cylinder->radius).add(cylinder->endless);
+  if (const auto* sheet = std::get_if<SheetCut>(&shape)) maker.add(sheet->point).add(sheet->normal);
   return maker;
 }
 
@@ -162,6 +167,10 @@ KeyMaker& add(KeyMaker& maker, const ScatterStep& step) {
 
 KeyMaker& add(KeyMaker& maker, const CutStep& step) {
   add(maker, step.shape);
+  maker.add(step.join).add(step.surface.has_value()).add(step.depth.has_value());
+  if (step.surface) // a file's content is the builder's to add
+    maker.add(step.surface->shape).add(step.surface->triangles).add(step.surface->scale);
+  if (step.depth) maker.add(static_cast<int>(step.depth->region)).add(step.depth->value); // and the depth's key
   maker.add(static_cast<int>(step.keep)).add(step.spread).add(step.snap).add(step.only);
   maker.add(static_cast<std::uint64_t>(step.placements.size()));
   for (const PiecePlacement& stood : step.placements) {
@@ -172,6 +181,8 @@ KeyMaker& add(KeyMaker& maker, const CutStep& step) {
 }
 
 KeyMaker& add(KeyMaker& maker, const MoveStep& step) {
+  maker.add(step.explode.has_value()).add(step.explode.value_or(0));
+  maker.add(step.drop.has_value()).add(step.drop.value_or(0));
   maker.add(step.piece).add(step.translate).add(step.axis).add(step.angle).add(step.about.has_value());
   if (step.about) maker.add(*step.about);
   return maker;
@@ -186,6 +197,7 @@ std::map<std::string, std::string> BuildResult::keys() const {
 void add_last_cut(std::map<std::string, std::string>& keys, const Recipe& recipe) {
   std::erase_if(keys, [](const auto& entry) { return entry.first.starts_with("move "); });
   const std::size_t last = recipe.cuts.size() - 1;
+  if (recipe.cuts[last].surface || recipe.cuts[last].depth) return; // its key is only known to a build
   const std::string before = last == 0 ? "refine" : "cut " + std::to_string(last - 1);
   const auto found = keys.find(before);
   if (found == keys.end()) return; // a model that was not built from a recipe

@@ -1,5 +1,6 @@
 #include "recipe/steps.h"
 
+#include "recipe/surface_source.h"
 #include "volume/base/error.h"
 
 #include <Eigen/Geometry>
@@ -43,14 +44,77 @@ Vec3d rest_point_in(const Pieces& pieces, std::uint32_t piece, const TetMesh& ro
   return result;
 }
 
-CutResult apply_cut(Pieces& pieces, const TetMesh& root, const Boundary& boundary, const Locator& locator,
-                    const CutStep& step, const std::string& where) {
-  const std::unique_ptr<LevelSet> level_set = level_set_of(step.shape, where);
+namespace {
+
+/// Puts the named pieces together where the first of them stands.
+CutResult join_named(Pieces& pieces, const StepContext& context, const CutStep& step, const std::string& where) {
+  const TetMesh& root = context.model.mesh;
+  std::vector<std::uint32_t> named;
+  for (std::size_t i = 0; i < step.join.size(); ++i)
+    named.push_back(piece_named(pieces, root, context.locator, step.join[i], where + "/join/" + std::to_string(i)));
+  const std::vector<std::uint32_t> from = join_pieces(pieces, named, where + "/join");
+  CutResult result;
+  for (const std::uint32_t p : from) result.origin.push_back({p, 0});
+  return result;
+}
+
+/// The cut itself; `level_set` is null for one by depth.
+CutResult cut_pieces(Pieces& work, const StepContext& context, const CutStep& step, const LevelSet* level_set,
+                     const CutOptions& options, const std::string& where) {
+  const Model& model = context.model;
+  try {
+    if (step.depth) {
+      const std::vector<double> value = depth_values(work, model, *step.depth, where + "/depth");
+      return context.cutter ? context.cutter->cut_by_values(work, value, nullptr, options)
+                            : cut_by_values(work, model.mesh, model.boundary, value, nullptr, options);
+    }
+    return context.cutter ? context.cutter->cut(work, *level_set, options)
+                          : cut(work, model.mesh, model.boundary, *level_set, options);
+  } catch (const InvalidInput& error) {
+    // What is wrong and how to mend it, at the place in the recipe instead of the library's.
+    std::string what = error.what();
+    if (!what.starts_with("cut: ")) throw;
+    what.erase(0, 5);
+    const std::size_t mend = what.rfind("; ");
+    throw InvalidInput(where, "cannot be made: " + what.substr(0, mend),
+                       mend == std::string::npos ? "move the cut so that it passes through the solid"
+                                                 : what.substr(mend + 2));
+  }
+}
+
+/// On which side of the cut a piece stands that it left whole.
+double side_of_piece(const Pieces& work, std::uint32_t piece, const StepContext& context, const CutStep& step,
+                     const LevelSet* level_set) {
+  const Vec3d inside = rest_point_in(work, piece, context.model.mesh);
+  if (level_set) return level_set->value(work.piece[piece].placement(inside));
+  const Location at = context.locator.locate(inside);
+  const std::vector<double> value =
+      depth_values(whole_piece(context.model.mesh), context.model, *step.depth, "depth");
+  double result = 0;
+  for (int i = 0; i < 4; ++i) result += at.barycentric[i] * value[context.model.mesh.corner[at.tet][i]];
+  return result;
+}
+
+} // namespace
+
+CutResult apply_cut(Pieces& pieces, const StepContext& context, const CutStep& step, const std::string& where) {
+  const TetMesh& root = context.model.mesh;
+  const Locator& locator = context.locator;
+  std::unique_ptr<LevelSet> level_set;
+  if (step.surface && step.join.empty())
+    level_set = level_set_of(surface_of(*step.surface, context.folder / step.surface->file), where + "/surface");
+  else if (!step.depth && step.join.empty())
+    level_set = level_set_of(step.shape, where);
   Pieces work = pieces;
   for (std::size_t i = 0; i < step.placements.size(); ++i) {
     const PiecePlacement& stood = step.placements[i];
     const std::string at = where + "/placements/" + std::to_string(i) + "/piece";
     work.piece[piece_named(work, root, locator, stood.piece, at)].placement = stood.placement;
+  }
+  if (!step.join.empty()) {
+    const CutResult joined = join_named(work, context, step, where);
+    pieces = std::move(work);
+    return joined;
   }
   CutOptions options{.only = {}, .snap = step.snap};
   for (std::size_t i = 0; i < step.only.size(); ++i) {
@@ -61,18 +125,8 @@ CutResult apply_cut(Pieces& pieces, const TetMesh& root, const Boundary& boundar
   }
   std::sort(options.only.begin(), options.only.end());
 
-  CutResult result;
-  try {
-    result = cut(work, root, boundary, *level_set, options);
-  } catch (const InvalidInput& error) {
-    // What is wrong and how to mend it, at the place in the recipe instead of the library's.
-    std::string what = error.what();
-    if (what.starts_with("cut: ")) what.erase(0, 5);
-    const std::size_t mend = what.rfind("; ");
-    throw InvalidInput(where, "cannot be made: " + what.substr(0, mend),
-                       mend == std::string::npos ? "move the cut so that it passes through the solid"
-                                                 : what.substr(mend + 2));
-  }
+  CutResult result = cut_pieces(work, context, step, level_set.get(), options, where);
+  separate_pieces(work, root, result);
   if (step.spread > 0) spread(work, result, root, step.spread);
 
   if (step.keep != Keep::both) {
@@ -84,8 +138,7 @@ CutResult apply_cut(Pieces& pieces, const TetMesh& root, const Boundary& boundar
       const bool in_scope =
           options.only.empty() || std::binary_search(options.only.begin(), options.only.end(), origin.piece);
       // A piece that the cut left whole stands on one side of it.
-      if (side == 0 && in_scope)
-        side = level_set->value(work.piece[piece].placement(rest_point_in(work, piece, root))) < 0 ? -1 : 1;
+      if (side == 0 && in_scope) side = side_of_piece(work, piece, context, step, level_set.get()) < 0 ? -1 : 1;
       if (side == 0 || side == kept_side) keep.push_back(piece);
     }
     if (keep.empty()) throw InvalidInput(where, "keeps nothing", "keep the other side");
@@ -100,6 +153,8 @@ CutResult apply_cut(Pieces& pieces, const TetMesh& root, const Boundary& boundar
 
 void apply_move(Pieces& pieces, const TetMesh& root, const Locator& locator, const MoveStep& step,
                 const std::string& where) {
+  if (step.explode) return explode(pieces, root, *step.explode);
+  if (step.drop) return drop(pieces, root, *step.drop);
   const std::uint32_t piece = piece_named(pieces, root, locator, step.piece, where + "/piece");
   Rigid& placement = pieces.piece[piece].placement;
   if (step.angle != 0) {

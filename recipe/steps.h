@@ -1,18 +1,32 @@
 #pragma once
 // Cuts and moves of a recipe, done: the one way for a build, the command line and a window.
 #include "recipe/recipe.h"
-#include "volume/cut/cut.h"
+#include "volume/cut/arrange.h"
+#include "volume/layer/model.h"
 #include "volume/mesh/locate.h"
 
 namespace pith {
 
-/// Does one cut. `where` names the step in messages ("kiwi.json: /cuts/0"). The pieces stay unchanged when it throws.
-/// Errors: InvalidInput when the shape is degenerate, meets no piece, names a place outside all pieces, or when
-/// nothing would be left.
-CutResult apply_cut(Pieces& pieces, const TetMesh& root, const Boundary& boundary, const Locator& locator,
-                    const CutStep& step, const std::string& where);
+/// What steps work on.
+struct StepContext {
+  const Model& model;
+  const Locator& locator;
+  std::filesystem::path folder = {}; ///< what the paths of surfaces are relative to
+  Cutter* cutter = nullptr;          ///< of the model; null: every cut passes over all tets
+};
 
-/// Moves one piece. Errors: InvalidInput when `piece` lies in no piece.
+/// Does one cut, or joins pieces. Halves that do not hang together become pieces of their own. `where` names the step
+/// in messages ("kiwi.json: /cuts/0"). The pieces stay unchanged when it throws. Errors: InvalidInput when the shape
+/// is degenerate, meets no piece, names a place outside all pieces or a region without depth, or when nothing would
+/// be left; IoFailure where a surface cannot be read.
+CutResult apply_cut(Pieces& pieces, const StepContext& context, const CutStep& step, const std::string& where);
+
+/// The values of a depth cut, for cut_by_values: depth − value at each vertex id. Vertices of other regions take what
+/// is nearest in the region. Errors: InvalidInput when the model has no depth, or no such region.
+std::vector<double> depth_values(const Pieces& pieces, const Model& model, const DepthCut& cut,
+                                 const std::string& where);
+
+/// Moves one piece, or all. Errors: InvalidInput when `piece` lies in no piece.
 void apply_move(Pieces& pieces, const TetMesh& root, const Locator& locator, const MoveStep& step,
                 const std::string& where);
 

@@ -236,15 +236,36 @@ void put_shape(json& into, const LevelSetShape& shape) {
   }
   if (const auto* sphere = std::get_if<SphereCut>(&shape))
     into["sphere"] = {{"center", json_from(sphere->center)}, {"radius", sphere->radius}};
-  if (const auto* stroke = std::get_if<StrokeCut>(&shape))
-    into["stroke"] = {{"points", json_from(stroke->point)}, {"view", json_from(stroke->view)}};
+  if (const auto* stroke = std::get_if<StrokeCut>(&shape)) {
+    json& entry = into["stroke"] = {{"points", json_from(stroke->point)}, {"view", json_from(stroke->view)}};
+    put(entry, "closed", stroke->closed, false);
+    put(entry, "from", stroke->from, StrokeCut().from);
+    put(entry, "to", stroke->to, StrokeCut().to);
+  }
+  if (const auto* box = std::get_if<BoxCut>(&shape)) {
+    into["box"] = {{"center", json_from(box->center)}, {"size", json_from(box->size)}};
+    if (box->angle != 0) into["box"]["rotate"] = {{"axis", json_from(box->axis)}, {"angle", box->angle}};
+  }
+  if (const auto* cylinder = std::get_if<CylinderCut>(&shape)) {
+    into["cylinder"] = {
+        {"from", json_from(cylinder->from)}, {"to", json_from(cylinder->to)}, {"radius", cylinder->radius}};
+    put(into["cylinder"], "endless", cylinder->endless, false);
+  }
+  if (const auto* sheet = std::get_if<SheetCut>(&shape))
+    into["sheet"] = {{"points", json_from(sheet->point)}, {"normals", json_from(sheet->normal)}};
+}
+
+json json_of_file(const SurfaceSource& surface) {
+  json result = {{"file", surface.file}};
+  if (!surface.shape.empty()) result = {{"shape", surface.shape}, {"triangles", surface.triangles}};
+  put(result, "scale", surface.scale, 1.0);
+  return result;
 }
 
 json json_from(const DivideStep& divide) {
   json result = json::object();
   if (divide.surface) {
-    result["surface"] = {{"file", divide.surface->file}};
-    put(result["surface"], "scale", divide.surface->scale, 1.0);
+    result["surface"] = json_of_file(*divide.surface);
   } else {
     put_shape(result, divide.shape);
   }
@@ -255,7 +276,14 @@ json json_from(const DivideStep& divide) {
 
 json json_from(const CutStep& cut) {
   json result = json::object();
-  put_shape(result, cut.shape);
+  if (!cut.join.empty())
+    result["join"] = json_from(cut.join);
+  else if (cut.surface)
+    result["surface"] = json_of_file(*cut.surface);
+  else if (cut.depth)
+    result["depth"] = {{"region", cut.depth->region}, {"value", cut.depth->value}};
+  else
+    put_shape(result, cut.shape);
   if (cut.keep != Keep::both) result["keep"] = cut.keep == Keep::left ? "left" : "right";
   put(result, "spread", cut.spread, 0.0);
   put(result, "snap", cut.snap, CutStep().snap);
@@ -276,6 +304,8 @@ json json_from(const CutStep& cut) {
 }
 
 json json_from(const MoveStep& move) {
+  if (move.explode) return {{"explode", *move.explode}};
+  if (move.drop) return {{"drop", *move.drop}};
   json result = {{"piece", json_from(move.piece)}, {"translate", json_from(move.translate)}};
   if (move.angle != 0) {
     result["rotate"] = {{"axis", json_from(move.axis)}, {"angle", move.angle}};

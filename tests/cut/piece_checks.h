@@ -1,7 +1,7 @@
 #pragma once
 // What must hold of pieces after any cut, checked the slow and sure way.
 #include "volume/base/error.h"
-#include "volume/cut/cut.h"
+#include "volume/cut/arrange.h"
 #include "volume/mesh/orientation.h"
 
 #include <gtest/gtest.h>

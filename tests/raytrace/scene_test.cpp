@@ -4,7 +4,7 @@
 #include "tests/raytrace/scenes.h"
 #include "volume/base/error.h"
 #include "volume/base/random.h"
-#include "volume/cut/cut.h"
+#include "volume/cut/arrange.h"
 
 #include <gtest/gtest.h>
 

@@ -217,7 +217,7 @@ TEST_F(Build, CutsAreAFold) {
   // The same pieces come of cutting by hand and of building the recipe.
   BuildResult by_hand = builder.build(recipe, folder.path());
   const Locator locator(by_hand.model.mesh, by_hand.model.boundary);
-  apply_cut(by_hand.pieces, by_hand.model.mesh, by_hand.model.boundary, locator,
+  apply_cut(by_hand.pieces, {by_hand.model, locator},
             parse_cut(R"({"sphere": {"center": [0, 0, 0], "radius": 9}})", "cut"), "cut");
   EXPECT_EQ(by_hand.pieces.label, longer.pieces.label);
   EXPECT_EQ(by_hand.pieces.added_position, longer.pieces.added_position);

@@ -7,7 +7,6 @@
 #include "volume/cut/clusters.h"
 #include "volume/cut/subdivide.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -321,38 +320,6 @@ CutResult cut_by_values(Pieces& pieces, const TetMesh& root, const Boundary& bou
   const double diagonal = level_set && level_set->linear() ? bounds_of(root).diagonal() : 0;
   return Cutter(std::unique_ptr<Cutter::Parts>(new Cutter::Parts{root, boundary, {}, {}, diagonal, {}}))
       .cut_by_values(pieces, value, level_set, options);
-}
-
-void spread(Pieces& pieces, const CutResult& result, const TetMesh& root, double distance) {
-  if (!std::isfinite(distance)) throw InvalidInput("spread", "the distance is not finite", "give millimetres");
-  if (result.origin.size() != pieces.piece.size())
-    throw InvalidInput("spread",
-                       "the cut's result has " + std::to_string(result.origin.size()) + " pieces of " +
-                           std::to_string(pieces.piece.size()),
-                       "spread right after the cut");
-  // The sections of right halves look to the left.
-  Vec3d normal = Vec3d::Zero();
-  double area = 0;
-  const FaceTag tag = FaceTag::section(CutId(pieces.cut_count - 1));
-  for (std::size_t p = 0; p < pieces.piece.size(); ++p) {
-    if (result.origin[p].side <= 0) continue;
-    for (const CutTet& tet : pieces.piece[p].cut)
-      for (int i = 0; i < 4; ++i) {
-        if (tet.face[i] != tag) continue;
-        const auto& c = facet_corners[i];
-        const Vec3d& at = pieces.position(root, tet.corner[c[0]]);
-        const Vec3d facet =
-            (pieces.position(root, tet.corner[c[1]]) - at).cross(pieces.position(root, tet.corner[c[2]]) - at);
-        normal -= pieces.piece[p].placement.rotation * facet;
-        area += facet.norm();
-      }
-  }
-  if (!(normal.norm() > 1e-6 * area))
-    throw InvalidInput("spread", "the section has no mean normal: it is closed, or nothing was cut",
-                       "move the pieces one by one");
-  const Vec3d step = 0.5 * distance * normal.normalized();
-  for (std::size_t p = 0; p < pieces.piece.size(); ++p)
-    pieces.piece[p].placement.translation += result.origin[p].side * step;
 }
 
 } // namespace pith

@@ -72,13 +72,4 @@ CutResult cut(Pieces& pieces, const TetMesh& root, const Boundary& boundary, con
 CutResult cut_by_values(Pieces& pieces, const TetMesh& root, const Boundary& boundary, std::span<const double> value,
                         const LevelSet* level_set = nullptr, const CutOptions& options = {});
 
-/// Keeps the given pieces only, in that order; added vertices that nothing uses are dropped. Root tets of the others
-/// keep the label `was_cut`. Throws InvalidInput when `keep` is empty, names a piece twice or one that does not
-/// exist.
-void keep_pieces(Pieces& pieces, const TetMesh& root, std::span<const std::uint32_t> keep);
-
-/// Moves left halves and right halves of a fresh cut apart by `distance` mm (half each) along the mean section
-/// normal. Throws InvalidInput when the section is closed, so that no mean normal exists, or nothing was cut.
-void spread(Pieces& pieces, const CutResult& result, const TetMesh& root, double distance);
-
 } // namespace pith

@@ -102,14 +102,49 @@ StrokeNodes stroke_nodes(std::span<const Vec2d> points, std::size_t most, const 
   return result;
 }
 
+StrokeNodes loop_nodes(std::span<const Vec2d> points, std::size_t most, const std::string& where) {
+  std::vector<Vec2d> drawn(points.begin(), points.end());
+  while (drawn.size() > 1 && drawn.back() == drawn.front()) drawn.pop_back();
+  double area = 0, length = 0;
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    const Vec2d& next = drawn[(i + 1) % drawn.size()];
+    area += 0.5 * cross(drawn[i] - drawn[0], next - drawn[0]);
+    length += (next - drawn[i]).norm();
+    if (!drawn[i].allFinite()) throw InvalidInput(where, "a number is not finite", "give finite numbers");
+  }
+  if (!(std::abs(area) > 1e-9 * length * length))
+    throw InvalidInput(where, "the loop encloses no area", "draw it around something");
+  if (area < 0) std::reverse(drawn.begin(), drawn.end());
+
+  // Two open strokes: from the first point to the one farthest from it, and back.
+  const auto far = std::max_element(drawn.begin(), drawn.end(), [&](const Vec2d& a, const Vec2d& b) {
+    return (a - drawn[0]).squaredNorm() < (b - drawn[0]).squaredNorm();
+  });
+  const std::vector<Vec2d> there(drawn.begin(), far + 1);
+  std::vector<Vec2d> back(far, drawn.end());
+  back.push_back(drawn[0]);
+  StrokeNodes result;
+  result.closed = true;
+  for (const auto* half : std::array<const std::vector<Vec2d>*, 2>{&there, &back}) {
+    const StrokeNodes nodes = stroke_nodes(*half, most / 2, where);
+    result.node.insert(result.node.end(), nodes.node.begin(), nodes.node.end() - 1);
+    result.length += nodes.length;
+  }
+  return result;
+}
+
 Divider::Divider(const StrokeNodes& nodes, const std::string& where) : node_(nodes.node) {
   const int last = static_cast<int>(node_.size()) - 1;
-  part_.push_back({node_[0], -nodes.start_direction, -infinity, 0, -1, 0, -1});
-  for (int i = 0; i < last; ++i) {
-    const Vec2d along = node_[i + 1] - node_[i];
-    part_.push_back({node_[i], along.normalized(), 0, along.norm(), i, i + 1, 0});
-  }
-  part_.push_back({node_[last], nodes.end_direction, 0, infinity, last, -1, 1});
+  const auto add_part = [&](int from, int to) {
+    const Vec2d along = node_[to] - node_[from];
+    part_.push_back({node_[from], along.normalized(), 0, along.norm(), from, to, 0});
+  };
+  if (!nodes.closed) part_.push_back({node_[0], -nodes.start_direction, -infinity, 0, -1, 0, -1});
+  for (int i = 0; i < last; ++i) add_part(i, i + 1);
+  if (nodes.closed)
+    add_part(last, 0);
+  else
+    part_.push_back({node_[last], nodes.end_direction, 0, infinity, last, -1, 1});
 
   // Where two parts cross, as parameters along both.
   const auto crossing = [&](const Part& a, const Part& b) -> std::optional<std::pair<double, double>> {
@@ -126,17 +161,22 @@ Divider::Divider(const StrokeNodes& nodes, const std::string& where) : node_(nod
     if (std::abs(cross(a.direction, b.direction)) < 1e-9 && a.direction.dot(b.direction) < 0)
       throw InvalidInput(where, "it turns back onto itself near " + text_of(b.from), "draw a stroke without folds");
     for (int j = i + 2; j < parts; ++j) {
-      const bool continuations = i == 0 && j == parts - 1;
+      const bool ends = i == 0 && j == parts - 1; // continuations, or neighbours in a loop
       const auto at = crossing(a, part_[j]);
-      if (!at || continuations) continue;
+      if (!at || ends) continue;
       const std::string place = text_of(a.from + at->first * a.direction);
-      if (i == 0 || j == parts - 1)
+      if (!nodes.closed && (i == 0 || j == parts - 1))
         throw InvalidInput(where,
                            "the straight continuation of its " + std::string(i == 0 ? "start" : "end") +
                                " crosses it near " + place,
                            "draw the ends outwards, away from the stroke");
       throw InvalidInput(where, "it crosses itself near " + place, "draw a stroke that does not cross itself");
     }
+  }
+  if (nodes.closed) {
+    for (int i = 0; i <= last; ++i)
+      normal_.push_back((right_of(part_[(i + last) % parts].direction) + right_of(part_[i].direction)).normalized());
+    return;
   }
   if (const auto at = crossing(part_.front(), part_.back())) {
     part_.front().begin = at->first;

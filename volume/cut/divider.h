@@ -13,6 +13,7 @@ struct StrokeNodes {
   std::vector<Vec2d> node;              ///< at least two, on the stroke as it was drawn
   double length = 0;                    ///< of the stroke, screen units
   Vec2d start_direction, end_direction; ///< unit, outwards along the continuations
+  bool closed = false;                  ///< a loop: the last node joins the first, and nothing continues
   bool straight = false;                ///< all points lie on one line, within 1e-9 of the length
 };
 
@@ -20,6 +21,9 @@ struct StrokeNodes {
 /// points in between at most length/(most/2) apart. Jitter below the tolerance goes. Throws InvalidInput (`where`)
 /// when there are fewer than two distinct points or a number is not finite.
 StrokeNodes stroke_nodes(std::span<const Vec2d> points, std::size_t most, const std::string& where);
+
+/// The same of a loop, turned so that its inside is on the left. Throws InvalidInput also where it encloses no area.
+StrokeNodes loop_nodes(std::span<const Vec2d> points, std::size_t most, const std::string& where);
 
 /// The nodes' polyline with its straight continuations. If the continuations meet, both end there and the divider is
 /// a closed curve.

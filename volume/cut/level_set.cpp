@@ -66,6 +66,12 @@ public:
     return normal_ - amplitude_ * height * (1 - t * t) * slope;
   }
 
+  int side_of_ball(const Vec3d& center, double radius) const override {
+    const double at = normal_.dot(center) - offset_;
+    const double reach = (radius + amplitude_) * (1 + 1e-9) + 1e-9 * std::abs(at);
+    return (at > reach) - (at < -reach);
+  }
+
 private:
   static constexpr int wave_count = 16;
   static constexpr double height = 0.35355339059327373; ///< √(2 / wave_count)
@@ -123,12 +129,6 @@ std::unique_ptr<LevelSet> level_set_of(const SphereCut& sphere, const std::strin
   if (!(sphere.radius > 0))
     throw InvalidInput(where, "the radius is " + std::to_string(sphere.radius) + " mm", "give a positive radius");
   return std::make_unique<Sphere>(sphere.center, sphere.radius);
-}
-
-std::unique_ptr<LevelSet> level_set_of(const LevelSetShape& shape, const std::string& where) {
-  if (const auto* plane = std::get_if<PlaneCut>(&shape)) return level_set_of(*plane, where + "/plane");
-  if (const auto* sphere = std::get_if<SphereCut>(&shape)) return level_set_of(*sphere, where + "/sphere");
-  return level_set_of(std::get<StrokeCut>(shape), where + "/stroke");
 }
 
 } // namespace pith

@@ -1,6 +1,6 @@
-// Pieces as data: the first one, checks, section normals, and keeping some of them.
+// Pieces as data: the first one, checks, and section normals.
 #include "volume/base/error.h"
-#include "volume/cut/cut.h"
+#include "volume/cut/piece.h"
 
 #include <algorithm>
 #include <string>
@@ -105,56 +105,6 @@ Vec3f section_normal(const Pieces& pieces, const TetMesh& root, VertexId v, CutI
   const auto at = std::lower_bound(pieces.on_section.begin(), pieces.on_section.end(), std::pair(cut, v), before);
   const bool found = at != pieces.on_section.end() && at->cut == cut && at->vertex == v;
   return found ? at->normal : Vec3f::Zero();
-}
-
-void keep_pieces(Pieces& pieces, const TetMesh& root, std::span<const std::uint32_t> keep) {
-  std::vector<std::uint32_t> number(pieces.piece.size(), Pieces::was_cut);
-  if (keep.empty()) throw InvalidInput("keep", "no piece is kept", "name at least one piece");
-  for (std::size_t k = 0; k < keep.size(); ++k) {
-    if (keep[k] >= pieces.piece.size())
-      throw InvalidInput("keep", "there is no piece " + text_of(keep[k]) + " among " + text_of(pieces.piece.size()),
-                         "name pieces from 0 to " + text_of(pieces.piece.size() - 1));
-    if (number[keep[k]] != Pieces::was_cut)
-      throw InvalidInput("keep", "piece " + text_of(keep[k]) + " is named twice", "name each piece once");
-    number[keep[k]] = static_cast<std::uint32_t>(k);
-  }
-
-  // Added vertices that a kept tet uses, and those between which they lie.
-  const std::uint32_t first = static_cast<std::uint32_t>(root.vertex_count());
-  std::vector<bool> used(pieces.added.size(), false);
-  for (const std::uint32_t p : keep)
-    for (const CutTet& tet : pieces.piece[p].cut)
-      for (const VertexId v : tet.corner)
-        if (v >= first) used[v - first] = true;
-  for (std::size_t i = used.size(); i-- > 0;)
-    if (used[i])
-      for (const VertexId end : {pieces.added[i].a, pieces.added[i].b})
-        if (end >= first) used[end - first] = true;
-
-  Pieces kept;
-  kept.root_vertex_count = pieces.root_vertex_count;
-  kept.cut_count = pieces.cut_count;
-  std::vector<VertexId> renumbered(used.size());
-  const auto now = [&](VertexId v) { return v < first ? v : renumbered[v - first]; };
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    if (!used[i]) continue;
-    renumbered[i] = VertexId(first + kept.added.size());
-    kept.added.push_back({now(pieces.added[i].a), now(pieces.added[i].b), pieces.added[i].cut});
-    kept.added_position.push_back(pieces.added_position[i]);
-    kept.added_normal.push_back(pieces.added_normal[i]);
-  }
-  for (const SectionNormal& known : pieces.on_section)
-    if (const VertexId v = now(known.vertex); v.exists()) kept.on_section.push_back({v, known.cut, known.normal});
-  kept.label = pieces.label;
-  for (std::uint32_t& label : kept.label)
-    if (label != Pieces::was_cut) label = number[label];
-  kept.piece.reserve(keep.size());
-  for (const std::uint32_t p : keep) {
-    kept.piece.push_back(pieces.piece[p]);
-    for (CutTet& tet : kept.piece.back().cut)
-      for (VertexId& v : tet.corner) v = now(v);
-  }
-  pieces = std::move(kept);
 }
 
 } // namespace pith

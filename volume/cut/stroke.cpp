@@ -100,6 +100,21 @@ public:
            slope.y() * (screen_.upward - place.at.y() * place.half_slope);
   }
 
+  /// Farther than the spline's reach from the stroke, the sign is that of the distance on the screen, where the ball
+  /// covers a disk.
+  int side_of_ball(const Vec3d& center, double radius) const override {
+    const Vec2d at = screen_.place(center).at;
+    double disk = radius / screen_.half;
+    if (!screen_.orthographic) {
+      const double nearest = (center - screen_.eye).dot(screen_.forward) - radius;
+      if (!(nearest > screen_.nearest)) return 0;
+      disk = radius / nearest * (1 / screen_.per_depth + at.norm());
+    }
+    const double distance = divider_.nearest(at).distance;
+    const double reach = (disk + reach_) * (1 + 1e-9) + 1e-9 * std::abs(distance);
+    return (distance > reach) - (distance < -reach);
+  }
+
 private:
   void fit(const StrokeNodes& nodes) {
     std::vector<Vec3d> center;
@@ -119,12 +134,13 @@ private:
     const std::size_t count = nodes.node.size();
     for (std::size_t i = 0; i < count; ++i) {
       double gap = spacing_;
-      if (i > 0) gap = std::min(gap, (nodes.node[i] - nodes.node[i - 1]).norm());
-      if (i + 1 < count) gap = std::min(gap, (nodes.node[i] - nodes.node[i + 1]).norm());
+      if (i > 0 || nodes.closed) gap = std::min(gap, (nodes.node[i] - nodes.node[(i + count - 1) % count]).norm());
+      if (i + 1 < count || nodes.closed) gap = std::min(gap, (nodes.node[i] - nodes.node[(i + 1) % count]).norm());
       add_across(nodes.node[i], divider_.normal(i), std::max(0.5 * gap, 0.1 * spacing_));
     }
     for (const double along : {1.0, 2.0})
       for (const bool end : {false, true}) {
+        if (nodes.closed) continue;
         const Vec2d direction = end ? nodes.end_direction : nodes.start_direction;
         const Vec2d across(direction.y(), -direction.x());
         add_across((end ? nodes.node.back() : nodes.node.front()) + along * spacing_ * direction,
@@ -167,8 +183,23 @@ private:
 } // namespace
 
 std::unique_ptr<LevelSet> level_set_of(const StrokeCut& stroke, const std::string& where) {
-  const StrokeNodes nodes = stroke_nodes(stroke.point, most_nodes, where + ".point");
   const Screen screen = screen_of(stroke.view, where);
+  if (stroke.closed) {
+    if (!(stroke.from < stroke.to))
+      throw InvalidInput(where,
+                         "it is scooped from " + std::to_string(stroke.from) + " to " + std::to_string(stroke.to) +
+                             " mm from the eye",
+                         "give a \"from\" that is less than \"to\"");
+    std::vector<std::unique_ptr<LevelSet>> part;
+    part.push_back(
+        std::make_unique<Stroke>(loop_nodes(stroke.point, most_nodes, where + ".point"), screen, where + ".point"));
+    const double eye = screen.forward.dot(screen.eye);
+    if (std::isfinite(stroke.from))
+      part.push_back(level_set_of(PlaneCut{-screen.forward, -(eye + stroke.from)}, where));
+    if (std::isfinite(stroke.to)) part.push_back(level_set_of(PlaneCut{screen.forward, eye + stroke.to}, where));
+    return part.size() == 1 ? std::move(part[0]) : shared_by(std::move(part));
+  }
+  const StrokeNodes nodes = stroke_nodes(stroke.point, most_nodes, where + ".point");
   if (!nodes.straight) return std::make_unique<Stroke>(nodes, screen, where + ".point");
 
   // Right of the direction of drawing is positive: n · (u, v) = c on the screen is n · (to · right, to · upward) =

@@ -37,6 +37,17 @@ public:
       }
     }
     tree_ = FacetTree(std::move(triangles));
+    std::map<Edge, std::array<int, 2>> uses; // of each edge, in its two directions
+    for (const auto& c : corner_)
+      for (int i = 0; i < 3; ++i) ++uses[edge_of(c[i], c[(i + 1) % 3])][c[i] < c[(i + 1) % 3]];
+    closed_ = std::all_of(uses.begin(), uses.end(), [](const auto& use) { return use.second[0] == use.second[1]; });
+  }
+
+  /// Beyond the rim of an open surface the value jumps, so nothing is certain there.
+  int side_of_ball(const Vec3d& center, double radius) const override {
+    if (!closed_) return 0;
+    const double at = value(center), reach = radius + 1e-9 * (radius + std::abs(at));
+    return (at > reach) - (at < -reach);
   }
 
   double value(const Vec3d& x) const override {
@@ -72,6 +83,7 @@ private:
   PerVertex<Vec3d> vertex_normal_;
   std::map<Edge, Vec3d> edge_normal_;
   FacetTree tree_;
+  bool closed_ = false;
 };
 
 } // namespace
