@@ -1,6 +1,9 @@
 // cut/*: a level set's values given, until both halves are there.
 #include "bench/fixtures.h"
+#include "volume/base/random.h"
 #include "volume/cut/cut.h"
+
+#include <Eigen/Geometry>
 
 #include <fmt/format.h>
 #include <variant>
@@ -31,24 +34,22 @@ Measured kiwi(const Settings& settings) {
   Pieces pieces;
   Cutter cutter(root, boundary);
   std::size_t triangles = 0, tets_cut = 0;
-  double cut_alone = 0;
-  const int times = settings.times(101);
-  const auto both = [&](bool surfaces) {
-    return median_seconds(
-        times, [&] { pieces = whole; },
-        [&] {
-          tets_cut = cutter.cut_by_values(pieces, value, field.get()).tets_cut;
-          if (!surfaces) return;
-          triangles = 0;
-          for (std::uint32_t p = 0; p < pieces.piece.size(); ++p)
-            triangles += surface_of(pieces, p, root, boundary).triangle.size();
-        });
+  const auto time = [&](const LevelSet* level_set, bool surfaces) {
+    return 1e3 * median_seconds(
+                     settings.times(101), [&] { pieces = whole; },
+                     [&] {
+                       tets_cut = cutter.cut_by_values(pieces, value, level_set).tets_cut;
+                       if (!surfaces) return;
+                       triangles = 0;
+                       for (std::uint32_t p = 0; p < pieces.piece.size(); ++p)
+                         triangles += surface_of(pieces, p, root, boundary).triangle.size();
+                     });
   };
-  cut_alone = both(false);
-  const double drawn = both(true);
-  return {1e3 * drawn,
-          fmt::format("{} tets, {} cut; the pieces {:.3f} ms, with their surfaces ({} triangles) {:.3f} ms",
-                      root.tet_count(), tets_cut, 1e3 * cut_alone, triangles, 1e3 * drawn)};
+  const double by_values = time(nullptr, true), pieces_alone = time(nullptr, false), exact = time(field.get(), true);
+  return {by_values,
+          fmt::format("{} tets, {} cut; the pieces {:.3f} ms, with their surfaces ({} triangles) {:.3f} ms; with "
+                      "the stroke's true zeros and normals {:.3f} ms",
+                      root.tet_count(), tets_cut, pieces_alone, triangles, by_values, exact)};
 }
 
 Measured sphere_1m(const Settings& settings) {
@@ -72,10 +73,116 @@ Measured sphere_1m(const Settings& settings) {
   return {1e3 * all, fmt::format("{} tets, {} cut; 1 thread {:.2f} ms", root.tet_count(), tets_cut, 1e3 * one)};
 }
 
+/// A stroke of 500 samples across a cube of 200,000 vertices, from its points to surfaces that can be drawn.
+Measured stroke_200k(const Settings& settings) {
+  constexpr int cells = 58;
+  const TetMesh root = jittered_cube(cells);
+  const Boundary boundary = boundary_of(root);
+  const Vec3d middle = Vec3d::Constant(0.5 * cells);
+  StrokeCut stroke;
+  stroke.view = {.eye = middle + Vec3d(10, -30, 4 * cells), .target = middle};
+  for (int i = 0; i < 500; ++i) {
+    const double t = i / 499.0 - 0.5;
+    stroke.point.push_back({1.2 * t, 0.08 * std::sin(20 * t) + 0.03 * std::cos(47 * t)});
+  }
+  Cutter cutter(root, boundary);
+  const Pieces whole = whole_piece(root);
+  Pieces pieces;
+  std::size_t tets_cut = 0, triangles = 0;
+  double fitted = 0, cut_too = 0;
+  const double all = 1e3 * median_seconds(
+                               settings.times(21), [&] { pieces = whole; },
+                               [&] {
+                                 const double begin = thread_seconds();
+                                 const auto field = level_set_of(stroke);
+                                 fitted = 1e3 * (thread_seconds() - begin);
+                                 tets_cut = cutter.cut(pieces, *field).tets_cut;
+                                 cut_too = 1e3 * (thread_seconds() - begin);
+                                 triangles = 0;
+                                 for (std::uint32_t p = 0; p < pieces.piece.size(); ++p)
+                                   triangles += surface_of(pieces, p, root, boundary).triangle.size();
+                               });
+  return {all,
+          fmt::format("{} vertices, {} tets, {} cut, {} triangles; of one thread's time: fitting {:.2f} ms, cutting "
+                      "{:.2f} ms",
+                      root.vertex_count(), root.tet_count(), tets_cut, triangles, fitted, cut_too - fitted)};
+}
+
+/// A piece of 1 % of a million tets is cut again.
+Measured recut_1m(const Settings& settings) {
+  constexpr int cells = 55;
+  const TetMesh root = jittered_cube(cells);
+  const Boundary boundary = boundary_of(root);
+  Cutter cutter(root, boundary);
+  const Vec3d middle = Vec3d::Constant(0.5 * cells);
+  const double radius = std::cbrt(0.01 * 3 / (4 * 3.14159265)) * cells;
+  Pieces small = whole_piece(root);
+  cutter.cut(small, *level_set_of(SphereCut{middle, radius}));
+  const auto field = level_set_of(PlaneCut{{1, 2, 3}, Vec3d(1, 2, 3).dot(middle) + 1});
+  Pieces pieces;
+  std::size_t tets_cut = 0;
+  const double all = 1e3 * median_seconds(
+                               settings.times(51), [&] { pieces = small; },
+                               [&] { tets_cut = cutter.cut(pieces, *field, {.only = {0}}).tets_cut; });
+  return {all, fmt::format("{} tets, the piece {}, {} cut", root.tet_count(),
+                           measure(small, 0, root).whole_tets + small.piece[0].cut.size(), tets_cut)};
+}
+
+/// A hundred random planes in a row, all pieces each time.
+Measured hundred_1m(const Settings&) {
+  constexpr int cells = 55, cuts = 100;
+  const TetMesh root = jittered_cube(cells);
+  const Boundary boundary = boundary_of(root);
+  Cutter cutter(root, boundary);
+  Pieces pieces = whole_piece(root);
+  Random random(71, 0);
+  double seconds = 0;
+  std::vector<Vec3d> normal;
+  std::vector<double> offset;
+  for (int k = 0; k < cuts; ++k) {
+    Vec3d n(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    n.normalize();
+    normal.push_back(n);
+    offset.push_back(
+        n.dot(Vec3d(random.uniform(0.2, 0.8), random.uniform(0.2, 0.8), random.uniform(0.2, 0.8)) * cells));
+    seconds += seconds_of([&] { cutter.cut(pieces, *level_set_of(PlaneCut{n, offset[k]})); });
+  }
+  std::size_t tets = 0;
+  double dihedral = 4, off = 0, volume = 0, flattest = 1e300;
+  for (std::uint32_t p = 0; p < pieces.piece.size(); ++p) {
+    const PieceMeasure measured = measure(pieces, p, root);
+    tets += measured.whole_tets + measured.cut_tets;
+    dihedral = std::min(dihedral, measured.minimum_dihedral);
+    volume += measured.volume;
+    for (const CutTet& tet : pieces.piece[p].cut) {
+      const Vec3d &a = pieces.position(root, tet.corner[0]), &b = pieces.position(root, tet.corner[1]),
+                  &c = pieces.position(root, tet.corner[2]), &d = pieces.position(root, tet.corner[3]);
+      flattest = std::min(flattest, (b - a).cross(c - a).dot(d - a) / 6);
+      for (int i = 0; i < 4; ++i)
+        if (tet.face[i].is_section())
+          for (const int v : facet_corners[i]) {
+            const std::uint32_t k = tet.face[i].cut().value;
+            off = std::max(off, std::abs(normal[k].dot(pieces.position(root, tet.corner[v])) - offset[k]));
+          }
+    }
+  }
+  const double growth = static_cast<double>(tets) / static_cast<double>(root.tet_count());
+  const double whole = measure(whole_piece(root), 0, root).volume;
+  return {growth,
+          fmt::format("{} pieces, {} tets; smallest dihedral {:.2g}°, smallest volume {:.2g} mm³, sections flat to "
+                      "{:.2g} of the diagonal, volumes sum to 1 + {:.1g}; {:.1f} ms a cut",
+                      pieces.piece.size(), tets, dihedral * 180 / 3.14159265, flattest,
+                      off / (std::sqrt(3.0) * cells), std::abs(volume / whole - 1), 1e3 * seconds / cuts)};
+}
+
 } // namespace
 
 std::vector<Row> cut_rows() {
-  return {{"cut/kiwi", "ms", "≤ 0.2", kiwi}, {"cut/sphere_1m", "ms", "≤ 12", sphere_1m}};
+  return {{"cut/kiwi", "ms", "≤ 0.2", kiwi},
+          {"cut/sphere_1m", "ms", "≤ 12", sphere_1m},
+          {"cut/stroke_200k", "ms", "≤ 50", stroke_200k},
+          {"cut/recut_1m", "ms", "≤ 1", recut_1m},
+          {"cut/hundred_1m", "×", "≤ 6", hundred_1m}};
 }
 
 } // namespace pith::bench
