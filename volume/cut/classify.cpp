@@ -179,13 +179,8 @@ void classify_whole(const Pieces& pieces, const TetMesh& root, const PieceGroup&
     }
     flush();
   });
-  const std::size_t crossed = sides.crossed.size(), touching = sides.touching.size();
   for (const BlockFindings& block : found)
     append(sides.crossed, block.crossed), append(sides.touching, block.touching);
-  // Clusters come in an order of their own; every order must give the same cut.
-  for (auto [tets, begin] : {std::pair(&sides.crossed, crossed), std::pair(&sides.touching, touching)})
-    if (!std::is_sorted(tets->begin() + begin, tets->end(), before))
-      std::sort(tets->begin() + begin, tets->end(), before);
 }
 
 void classify(const Pieces& pieces, const TetMesh& root, const PieceGroup& group, Sides& sides) {
@@ -222,13 +217,7 @@ void add_touching(const Pieces& pieces, const PieceGroup& group, const VertexTet
 
 std::size_t PieceGroup::row_of(TetId tet) const {
   if (everything) return tet;
-  auto begin = whole.begin(), end = whole.end();
-  if (clusters) {
-    const std::uint32_t c = clusters->cluster[tet];
-    end = begin + first_row[c + 1];
-    begin += first_row[c];
-  }
-  return static_cast<std::size_t>(std::lower_bound(begin, end, tet) - whole.begin());
+  return static_cast<std::size_t>(std::lower_bound(whole.begin(), whole.end(), tet) - whole.begin());
 }
 
 void refile(const Pieces& pieces, const TetMesh& root, const PieceGroup& group, Sides& sides) {
@@ -252,8 +241,9 @@ void refile(const Pieces& pieces, const TetMesh& root, const PieceGroup& group, 
 }
 
 Sides sides_of(const Pieces& pieces, const TetMesh& root, const PieceGroup& group, const GroupField& field,
-               const VertexTets* around) {
+               const VertexTets* around, std::vector<std::uint8_t> state) {
   Sides sides;
+  sides.state = std::move(state);
   find_states(field, sides.state);
   classify(pieces, root, group, sides);
   std::vector<VertexId> snapped = snapped_vertices(pieces, root, sides, field);

@@ -15,13 +15,13 @@ struct PieceGroup {
   Rigid placement;
   std::vector<std::uint32_t> piece; ///< ascending
   bool everything = false;          ///< look at every root tet; all that are whole belong to the group
-  std::vector<TetId> whole;         ///< otherwise: the whole root tets to look at
+  std::vector<TetId> whole;         ///< otherwise: the whole root tets to look at, ascending
 
   // What the level set passes at a distance; empty where all tets are looked at.
   const TetClusters* clusters = nullptr;
   std::vector<std::int8_t> cluster_side; ///< by cluster: −1 or 1; 0: its tets are looked at
   std::vector<std::uint8_t> seen_far;    ///< by piece number, as Sides::seen: of whole tets in clusters of one side
-  std::vector<std::uint32_t> first_row;  ///< by cluster: its first row of `whole`; one more than there are clusters
+  std::vector<TetId> far_above;          ///< whole tets in clusters of side 1
 
   /// Where a whole tet that is looked at stands in Sides::whole.
   std::size_t row_of(TetId tet) const;
@@ -79,10 +79,10 @@ struct GroupField {
 
 /// Classifies all tets of the group. A vertex to which a zero on some edge comes closer than the snap counts as on: a
 /// set that depends on the values alone, not on the order of tets. Tets with all corners on are filed under
-/// `side_on`. `around`: the root's, or null: then a second pass finds the tets at snapped vertices. Throws
-/// InvalidInput where a value is not finite.
+/// `side_on`. `around`: the root's, or null: then a second pass finds the tets at snapped vertices. `state`:
+/// memory for Sides::state. Throws InvalidInput where a value is not finite.
 Sides sides_of(const Pieces& pieces, const TetMesh& root, const PieceGroup& group, const GroupField& field,
-               const VertexTets* around);
+               const VertexTets* around, std::vector<std::uint8_t> state = {});
 
 /// Vertices that count as on can pinch a half: it would hang together there by a vertex or an edge alone. Such
 /// vertices are put back on the side of their value (zero: above), and the tets classified again, until the halves of

@@ -8,7 +8,7 @@
 namespace pith {
 namespace {
 
-constexpr std::size_t tets_per_cluster = 256;
+constexpr std::size_t tets_per_cluster = 128;
 
 /// Spreads the lowest 21 bits of x to every third bit.
 std::uint64_t every_third_bit(std::uint64_t x) {
@@ -46,26 +46,19 @@ TetClusters clusters_of(const TetMesh& root) {
         reach[corner[j]] = std::max(reach[corner[j]], length);
       }
 
-  result.tet.resize(count);
   result.cluster.resize(count);
-  for (std::size_t begin = 0; begin < count; begin += tets_per_cluster)
-    result.begin.push_back(static_cast<std::uint32_t>(begin));
-  const std::size_t clusters = result.begin.size();
-  result.begin.push_back(static_cast<std::uint32_t>(count));
-  result.ball.resize(clusters);
-  parallel_for(clusters, 64, [&](std::size_t c) {
-    const auto first = result.tet.begin() + result.begin[c], last = result.tet.begin() + result.begin[c + 1];
+  result.ball.resize((count + tets_per_cluster - 1) / tets_per_cluster);
+  parallel_for(result.ball.size(), 64, [&](std::size_t c) {
+    const std::size_t begin = c * tets_per_cluster, end = std::min(count, begin + tets_per_cluster);
     Box around;
-    for (std::size_t i = result.begin[c]; i < result.begin[c + 1]; ++i) {
-      result.tet[i] = order[i].second;
+    for (std::size_t i = begin; i < end; ++i) {
       result.cluster[order[i].second] = static_cast<std::uint32_t>(c);
       for (const VertexId v : root.corner[order[i].second]) around.add(root.position[v]);
     }
-    std::sort(first, last);
     TetClusters::Ball& ball = result.ball[c];
     ball = {around.center(), 0};
-    for (auto t = first; t != last; ++t)
-      for (const VertexId v : root.corner[*t])
+    for (std::size_t i = begin; i < end; ++i)
+      for (const VertexId v : root.corner[order[i].second])
         ball.radius = std::max(ball.radius, (root.position[v] - ball.center).norm() + reach[v]);
     ball.radius *= 1 + 1e-9;
   });

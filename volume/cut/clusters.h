@@ -8,8 +8,6 @@ namespace pith {
 
 /// A few hundred root tets each, along a space-filling curve.
 struct TetClusters {
-  std::vector<TetId> tet;           ///< all root tets, cluster by cluster, ascending in each
-  std::vector<std::uint32_t> begin; ///< rows of `tet`, one more than there are clusters
   PerTet<std::uint32_t> cluster;    ///< of each tet
   struct Ball {
     Vec3d center;
@@ -18,8 +16,6 @@ struct TetClusters {
   std::vector<Ball> ball; ///< rest space; holds the cluster's tets and every tet that shares a vertex with one
 
   std::size_t count() const { return ball.size(); }
-  bool empty() const { return ball.empty(); }
-  std::span<const TetId> tets(std::size_t c) const { return {tet.data() + begin[c], tet.data() + begin[c + 1]}; }
 };
 
 /// O(n log n): 0.2 s for a million tets, once per root.

@@ -76,42 +76,57 @@ void take_all_tets(Groups& groups, const Pieces& pieces) {
       groups.group[groups.of_piece[p]].whole.push_back(t);
 }
 
-/// The whole tets of group g in clusters that the level set may reach; of the others the side.
+/// The whole tets of group g in clusters that the level set may reach, ascending; of the others the side.
 void take_near_tets(Groups& groups, std::uint32_t g, const Pieces& pieces, const TetClusters& clusters,
                     const LevelSet& level_set) {
   PieceGroup& group = groups.group[g];
   group.clusters = &clusters;
   group.cluster_side = sides_of_clusters(clusters, level_set, group.placement);
   group.seen_far.assign(pieces.piece.size(), 0);
-  constexpr std::size_t block = 256;
-  std::vector<std::vector<TetId>> near((clusters.count() + block - 1) / block);
-  parallel_blocks(clusters.count(), block, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) {
-      const int side = group.cluster_side[c];
-      std::uint32_t last = Pieces::was_cut;
-      for (const TetId t : clusters.tets(c)) {
+  constexpr std::size_t block = 32768, run = 64;
+  struct Found {
+    std::vector<TetId> near, above;
+    std::vector<std::uint8_t> seen;
+  };
+  std::vector<Found> found((pieces.label.size() + block - 1) / block);
+  parallel_blocks(pieces.label.size(), block, [&](std::size_t begin, std::size_t end) {
+    Found& here = found[begin / block];
+    here.seen.assign(pieces.piece.size(), 0);
+    const auto look = [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = from; i < to; ++i) {
+        const TetId t(i);
         const std::uint32_t p = pieces.label[t];
-        if (p == Pieces::was_cut || (side != 0 && p == last) || groups.of_piece[p] != g) continue;
-        last = p;
+        if (p == Pieces::was_cut || groups.of_piece[p] != g) continue;
+        const int side = group.cluster_side[clusters.cluster[t]];
         if (side == 0)
-          near[begin / block].push_back(t);
+          here.near.push_back(t);
         else
-          std::atomic_ref<std::uint8_t>(group.seen_far[p])
-              .fetch_or(side < 0 ? side_below : side_above, std::memory_order_relaxed);
+          here.seen[p] |= side < 0 ? side_below : side_above;
+        if (side > 0) here.above.push_back(t);
       }
+    };
+    if (group.piece.size() > 1) return look(begin, end);
+    const std::uint32_t only = group.piece[0]; // most runs of tets have none of a small piece
+    for (std::size_t from = begin; from < end; from += run) {
+      const std::size_t to = std::min(end, from + run);
+      bool any = false;
+      for (std::size_t i = from; i < to; ++i) any |= pieces.label[TetId(i)] == only;
+      if (any) look(from, to);
     }
   });
-  for (const std::vector<TetId>& part : near) group.whole.insert(group.whole.end(), part.begin(), part.end());
-  group.first_row.assign(clusters.count() + 1, 0);
-  for (const TetId t : group.whole) ++group.first_row[clusters.cluster[t] + 1];
-  for (std::size_t c = 0; c < clusters.count(); ++c) group.first_row[c + 1] += group.first_row[c];
+  for (const Found& part : found) {
+    group.whole.insert(group.whole.end(), part.near.begin(), part.near.end());
+    group.far_above.insert(group.far_above.end(), part.above.begin(), part.above.end());
+    for (const std::uint32_t p : group.piece) group.seen_far[p] |= part.seen.empty() ? 0 : part.seen[p];
+  }
 }
 
 /// The vertices of all tets that are looked at; empty: all vertices of the pieces are.
-std::vector<VertexId> vertices_of(const Pieces& pieces, const TetMesh& root, const PieceGroup& group) {
+std::vector<VertexId> vertices_of(const Pieces& pieces, const TetMesh& root, const PieceGroup& group,
+                                  std::vector<std::uint8_t>& used) {
   std::vector<VertexId> vertex;
   if (group.everything) return vertex;
-  std::vector<std::uint8_t> used(pieces.root_vertex_count + pieces.added.size(), 0);
+  used.assign(pieces.root_vertex_count + pieces.added.size(), 0);
   const auto use = [&](const std::array<VertexId, 4>& corner) {
     for (const VertexId v : corner)
       if (!used[v]) {
@@ -182,7 +197,7 @@ CutResult commit(Pieces& pieces, const Groups& groups, const std::vector<Sides>&
   reserve_ahead(pieces.on_section, on_section);
   pieces.piece.reserve(result.origin.size());
 
-  constexpr std::size_t block = 65536, clusters_per_block = 256;
+  constexpr std::size_t block = 65536;
   for (std::size_t g = 0; g < groups.group.size(); ++g) {
     const PieceGroup& group = groups.group[g];
     const auto to_right = [&](TetId t) {
@@ -193,10 +208,7 @@ CutResult commit(Pieces& pieces, const Groups& groups, const std::vector<Sides>&
     parallel_for(sides[g].whole.size(), block, [&](std::size_t i) {
       if (sides[g].whole[i] == side_above) to_right(group.everything ? TetId(i) : group.whole[i]);
     });
-    parallel_for(group.cluster_side.size(), clusters_per_block, [&](std::size_t c) {
-      if (group.cluster_side[c] > 0)
-        for (const TetId t : group.clusters->tets(c)) to_right(t);
-    });
+    parallel_for(group.far_above.size(), block, [&](std::size_t i) { to_right(group.far_above[i]); });
     for (const TetId t : cuts[g].opened) pieces.label[t] = Pieces::was_cut;
     pieces.added.insert(pieces.added.end(), cuts[g].added.begin(), cuts[g].added.end());
     pieces.added_position.insert(pieces.added_position.end(), cuts[g].added_position.begin(),
@@ -221,7 +233,8 @@ struct Cutter::Parts {
   std::optional<TetClusters> clusters; ///< none: every tet is looked at
   std::optional<VertexTets> around;    ///< with the clusters
   double diagonal;
-  std::vector<double> value; ///< memory that is used again
+  std::vector<double> value = {}; ///< memory that is used again, as below
+  std::vector<std::uint8_t> used = {}, state = {};
 
   /// `values` in place of the level set's where there are any.
   CutResult cut(Pieces& pieces, std::optional<std::span<const double>> values, const LevelSet* level_set,
@@ -238,18 +251,18 @@ struct Cutter::Parts {
     for (std::uint32_t g = 0; g < count; ++g) {
       if (near_only) take_near_tets(groups, g, pieces, *clusters, *level_set);
       const PieceGroup& group = groups.group[g];
-      const std::vector<VertexId> vertex = vertices_of(pieces, root, group);
+      const std::vector<VertexId> vertex = vertices_of(pieces, root, group, used);
       if (!values) evaluate(pieces, root, group, vertex, *level_set, value);
       GroupField field{values ? *values : std::span<const double>(value), vertex, level_set,
                        std::max(options.snap, smallest_snap), std::numeric_limits<double>::infinity()};
       if (level_set && level_set->linear() && options.snap <= largest_flat_snap)
         field.snap_distance = flatness * diagonal;
-      sides[g] = sides_of(pieces, root, group, field, around ? &*around : nullptr);
+      sides[g] = sides_of(pieces, root, group, field, around ? &*around : nullptr, std::move(state));
       if (options.manifold) part_pinches(pieces, root, group, field, sides[g]);
       cuts[g] = subdivided(pieces, root, boundary, group, sides[g], field, VertexId(next));
       next += cuts[g].added.size();
       any |= !cuts[g].piece.empty();
-      sides[g].state = {};
+      state = std::move(sides[g].state);
     }
     if (!any) refuse_uncut(pieces, values, level_set, options);
     return commit(pieces, groups, sides, cuts);
@@ -261,7 +274,7 @@ struct Cutter::Parts {
     take_all_tets(groups, pieces);
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const PieceGroup& group : groups.group) {
-      if (!values) evaluate(pieces, root, group, vertices_of(pieces, root, group), *level_set, value);
+      if (!values) evaluate(pieces, root, group, vertices_of(pieces, root, group, used), *level_set, value);
       const auto widen = [&](const std::array<VertexId, 4>& corner) {
         for (const VertexId v : corner) {
           low = std::min(low, values ? (*values)[v] : value[v]);
@@ -293,8 +306,7 @@ struct Cutter::Parts {
 };
 
 Cutter::Cutter(const TetMesh& root, const Boundary& boundary)
-    : parts_(
-          new Parts{root, boundary, clusters_of(root), tets_around_vertices(root), bounds_of(root).diagonal(), {}}) {}
+    : parts_(new Parts{root, boundary, clusters_of(root), tets_around_vertices(root), bounds_of(root).diagonal()}) {}
 Cutter::~Cutter() = default;
 Cutter::Cutter(Cutter&&) noexcept = default;
 
@@ -311,14 +323,14 @@ Cutter::Cutter(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 CutResult cut(Pieces& pieces, const TetMesh& root, const Boundary& boundary, const LevelSet& level_set,
               const CutOptions& options) {
   const double diagonal = level_set.linear() ? bounds_of(root).diagonal() : 0;
-  return Cutter(std::unique_ptr<Cutter::Parts>(new Cutter::Parts{root, boundary, {}, {}, diagonal, {}}))
+  return Cutter(std::unique_ptr<Cutter::Parts>(new Cutter::Parts{root, boundary, {}, {}, diagonal}))
       .cut(pieces, level_set, options);
 }
 
 CutResult cut_by_values(Pieces& pieces, const TetMesh& root, const Boundary& boundary, std::span<const double> value,
                         const LevelSet* level_set, const CutOptions& options) {
   const double diagonal = level_set && level_set->linear() ? bounds_of(root).diagonal() : 0;
-  return Cutter(std::unique_ptr<Cutter::Parts>(new Cutter::Parts{root, boundary, {}, {}, diagonal, {}}))
+  return Cutter(std::unique_ptr<Cutter::Parts>(new Cutter::Parts{root, boundary, {}, {}, diagonal}))
       .cut_by_values(pieces, value, level_set, options);
 }
 
