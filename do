@@ -289,6 +289,7 @@ bench() {
   local argument
   for argument in "$@"; do [[ $argument == --help ]] && { usage; return; }; done
   deps
+  install_packages libvtk9-dev # the peer of cut/sphere_1m
   configured release
   built release pith pith-bench pith-bench-tetgen >&2
   build/release/pith-bench "$@"

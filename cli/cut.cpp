@@ -144,8 +144,11 @@ void run(const CLI::App& app, const CutVerbOptions& options, const Session& sess
   Json pieces = Json::array();
   for (std::uint32_t piece = 0; piece < file.pieces.piece.size(); ++piece) {
     const PieceMeasure measured = measure(file.pieces, piece, mesh);
-    pieces.push_back(
-        {{"volume", measured.volume}, {"whole_tets", measured.whole_tets}, {"cut_tets", measured.cut_tets}});
+    const Vec3d centroid = file.pieces.piece[piece].placement(measured.centroid);
+    pieces.push_back({{"volume", measured.volume},
+                      {"centroid", {centroid.x(), centroid.y(), centroid.z()}},
+                      {"whole_tets", measured.whole_tets},
+                      {"cut_tets", measured.cut_tets}});
     session.say(fmt::format("  piece {}: {:.6g} mm³, {} whole tets, {} cut tets", piece, measured.volume,
                             measured.whole_tets, measured.cut_tets));
   }

@@ -43,6 +43,8 @@ Json add_quality(const std::filesystem::path& file, Json& pieces, const Session&
     session.stop_if_asked();
     const PieceReport report = report_of(model.pieces, piece, model.model);
     Json& entry = pieces[piece];
+    const Vec3d centroid = model.pieces.piece[piece].placement(report.centroid);
+    entry["centroid"] = {centroid.x(), centroid.y(), centroid.z()};
     entry["triangles"] = report.triangles;
     entry["watertight"] = report.watertight();
     entry["manifold"] = report.manifold();

@@ -23,6 +23,7 @@ PieceReport report_of(const Pieces& pieces, std::uint32_t piece, const Model& mo
   const PieceMeasure measured = measure(pieces, piece, model.mesh);
   const PieceSurface surface = surface_of(pieces, piece, model.mesh, model.boundary);
   PieceReport report{.volume = measured.volume,
+                     .centroid = measured.centroid,
                      .bounds = measured.bounds,
                      .whole_tets = measured.whole_tets,
                      .cut_tets = measured.cut_tets,

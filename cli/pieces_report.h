@@ -6,8 +6,9 @@
 namespace pith::cli {
 
 struct PieceReport {
-  double volume = 0; ///< mm³
-  Box bounds;        ///< rest space
+  double volume = 0;              ///< mm³
+  Vec3d centroid = Vec3d::Zero(); ///< rest space
+  Box bounds;                     ///< rest space
   std::size_t whole_tets = 0, cut_tets = 0, triangles = 0;
   std::size_t border_edges = 0;          ///< edges of the surface with an odd number of triangles
   std::size_t non_manifold_edges = 0;    ///< edges with more than two triangles

@@ -2,8 +2,10 @@
 // trip to disk leave every bit of it alone.
 #include "tests/layer/five_models.h"
 
+#include "volume/base/error.h"
 #include "volume/base/parallel.h"
-#include "volume/cut/cut.h"
+#include "volume/base/random.h"
+#include "volume/cut/arrange.h"
 #include "volume/io/model_io.h"
 
 #include <gtest/gtest.h>
@@ -111,6 +113,61 @@ TEST_P(Consistency, SurvivesTwoCutsMovesThreadsAndDisk) {
   }
   EXPECT_EQ(different, 0u);
   EXPECT_GT(colors, 200u);
+}
+
+TEST_P(Consistency, SurvivesALongSessionAtAHundredThousandPoints) {
+  // Planes, spheres, noise that would pinch, joining and moving; then vertices, facets and insides of all pieces.
+  const Root root(GetParam().make());
+  const TetMesh& mesh = root.model().mesh;
+  const Box box = bounds_of(mesh);
+  Cutter cutter(mesh, root.model().boundary);
+  Pieces pieces = whole_piece(mesh);
+  Random random(47, 0);
+  const auto inside = [&] {
+    return Vec3d(box.low + Vec3d(random.uniform(0.2, 0.8), random.uniform(0.2, 0.8), random.uniform(0.2, 0.8))
+                               .cwiseProduct(box.extent()));
+  };
+  for (int k = 0; k < 8; ++k) {
+    try {
+      if (k % 4 == 2) {
+        std::vector<double> value(mesh.vertex_count() + pieces.added.size());
+        for (double& v : value) v = std::floor(random.uniform(-1, 2));
+        cutter.cut_by_values(pieces, value, nullptr, {.only = {0}});
+      } else if (k % 4 == 3) {
+        join_pieces(pieces, std::vector<std::uint32_t>{0, static_cast<std::uint32_t>(pieces.piece.size() - 1)});
+      } else if (k % 4 == 1) {
+        cutter.cut(pieces, *level_set_of(SphereCut{inside(), 0.3 * box.diagonal()}));
+      } else {
+        const Vec3d n(random.uniform(-1, 1), random.uniform(-1, 1), 1);
+        cutter.cut(pieces, *level_set_of(PlaneCut{n, n.dot(inside())}));
+      }
+    } catch (const InvalidInput&) { // pieces that share no section, a sphere that misses
+    }
+    pieces.piece[random.below(pieces.piece.size())].placement.translation += Vec3d(0.1, 0, 0.2);
+  }
+  std::vector<MaterialPoint> points = piece_points(pieces, root);
+  std::vector<const CutTet*> tets;
+  for (const Piece& piece : pieces.piece)
+    for (const CutTet& tet : piece.cut) tets.push_back(&tet);
+  ASSERT_GT(tets.size(), 500u);
+  while (points.size() < 100'000) { // inside cut tets, on their faces and at their corners
+    const CutTet& tet = *tets[random.below(tets.size())];
+    const std::size_t kind = random.below(3);
+    Vec3d x = Vec3d::Zero();
+    double sum = 0;
+    for (std::size_t i = 0; i < (kind == 0 ? 4u : kind == 1 ? 3u : 1u); ++i) {
+      const double weight = 0.01 + random.uniform();
+      x += weight * pieces.position(mesh, tet.corner[i]);
+      sum += weight;
+    }
+    points.push_back({.position = x / sum, .region = mesh.region[tet.root], .facet = {}, .hint = tet.root});
+  }
+  const std::vector<Material> through_pieces = materials(root, points);
+  for (MaterialPoint& point : points) point.hint = {};
+  const std::vector<Material> of_root = materials(root, points);
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) different += !same_bits(through_pieces[i], of_root[i]);
+  EXPECT_EQ(different, 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(FiveMethods, Consistency, ::testing::ValuesIn(methods),
