@@ -130,10 +130,12 @@ private:
     for (std::size_t k = 0; k < recipe_.cuts.size(); ++k) {
       KeyMaker cut = run_.key("cut").add(before);
       if (const auto& surface = recipe_.cuts[k].surface; surface && surface->shape.empty())
-        cut.add(key_of(file_content(input_path(folder_, surface->file, where("/cuts/" + std::to_string(k) + "/surface/file")))));
+        cut.add(key_of(
+            file_content(input_path(folder_, surface->file, where("/cuts/" + std::to_string(k) + "/surface/file")))));
       if (recipe_.cuts[k].depth)
         for (std::size_t i = 0; i < recipe_.solids.size(); ++i)
-          if (recipe_.solids[i].region == recipe_.cuts[k].depth->region) cut.add(solid_keys_[i].*fields_of(recipe_.solids[i]).front().key);
+          if (recipe_.solids[i].region == recipe_.cuts[k].depth->region)
+            cut.add(solid_keys_[i].*fields_of(recipe_.solids[i]).front().key);
       step_keys_.push_back(before = add(cut, recipe_.cuts[k]).key());
       run_.announce(numbered("cut", k), before);
     }

@@ -115,9 +115,9 @@ struct DepthCut {
 /// One cut. The shape is given in world space, where the pieces stand.
 struct CutStep {
   LevelSetShape shape;
-  std::optional<SurfaceSource> surface;   ///< in place of `shape`: a surface file as a knife; left is inside it
-  std::optional<DepthCut> depth;          ///< in place of `shape`
-  std::vector<Vec3d> join;                ///< in place of a cut: rest points in pieces that become one again
+  std::optional<SurfaceSource> surface; ///< in place of `shape`: a surface file as a knife; left is inside it
+  std::optional<DepthCut> depth;        ///< in place of `shape`
+  std::vector<Vec3d> join;              ///< in place of a cut: rest points in pieces that become one again
   Keep keep = Keep::both;
   double spread = 0;                      ///< mm by which the halves are moved apart afterwards
   double snap = 0.01;                     ///< CutOptions::snap

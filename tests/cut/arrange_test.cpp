@@ -51,8 +51,8 @@ TEST(Arrange, JoiningGivesTheSamePoints) {
   const Pieces before = pieces;
   EXPECT_EQ(join_pieces(pieces, std::vector<std::uint32_t>{3, 1}), (std::vector<std::uint32_t>{0, 1, 2}));
   EXPECT_EQ(pieces.piece[1].placement.translation.x(), 3);
-  EXPECT_NEAR(measure(pieces, 1, mesh).volume,
-              measure(before, 1, mesh).volume + measure(before, 3, mesh).volume, 1e-9);
+  EXPECT_NEAR(measure(pieces, 1, mesh).volume, measure(before, 1, mesh).volume + measure(before, 3, mesh).volume,
+              1e-9);
   check_pieces(pieces, mesh, boundary);
   join_pieces(pieces, std::vector<std::uint32_t>{0, 1, 2});
   ASSERT_EQ(pieces.piece.size(), 1u);
@@ -70,7 +70,9 @@ TEST(Arrange, JoiningGivesTheSamePoints) {
   cut(slices, mesh, boundary, *level_set_of(PlaneCut{{1, 0, 0}, -3}));
   cut(slices, mesh, boundary, *level_set_of(PlaneCut{{1, 0, 0}, 3}));
   const Pieces same = slices;
-  EXPECT_NE(refusal([&] { join_pieces(slices, std::vector<std::uint32_t>{0, 2}); }).find("shares no section"),
+  EXPECT_NE(refusal([&] {
+              join_pieces(slices, std::vector<std::uint32_t>{0, 2});
+            }).find("shares no section"),
             std::string::npos);
   EXPECT_TRUE(same_bits(slices, same));
 }

@@ -105,7 +105,7 @@ std::string name_of(const ::testing::TestParamInfo<Kind>& info) {
 }
 INSTANTIATE_TEST_SUITE_P(Fields, EveryCut,
                          ::testing::Values(Kind::noise, Kind::sparse_noise, Kind::lattice, Kind::smooth,
-                                         Kind::snapped_smooth),
+                                           Kind::snapped_smooth),
                          name_of);
 
 TEST(CutProperty, WithoutPartingSuchFieldsDoPinch) {

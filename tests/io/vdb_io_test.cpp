@@ -1,3 +1,4 @@
+#include "volume/cut/arrange.h"
 #include "volume/io/vdb_io.h"
 
 #include "io_fixture.h"

@@ -8,7 +8,7 @@ namespace pith {
 
 /// A few hundred root tets each, along a space-filling curve.
 struct TetClusters {
-  PerTet<std::uint32_t> cluster;    ///< of each tet
+  PerTet<std::uint32_t> cluster; ///< of each tet
   struct Ball {
     Vec3d center;
     double radius;

@@ -107,12 +107,14 @@ void take_near_tets(Groups& groups, std::uint32_t g, const Pieces& pieces, const
     };
     if (group.piece.size() > 1) return look(begin, end);
     const std::uint32_t only = group.piece[0]; // most runs of tets have none of a small piece
-    for (std::size_t from = begin; from < end; from += run) {
-      const std::size_t to = std::min(end, from + run);
-      bool any = false;
-      for (std::size_t i = from; i < to; ++i) any |= pieces.label[TetId(i)] == only;
-      if (any) look(from, to);
+    std::size_t from = begin;
+    for (; from + run <= end; from += run) {
+      const std::uint32_t* label = &pieces.label[TetId(from)];
+      std::uint32_t hits = 0;
+      for (std::size_t i = 0; i < run; ++i) hits += label[i] == only;
+      if (hits > 0) look(from, from + run);
     }
+    look(from, end);
   });
   for (const Found& part : found) {
     group.whole.insert(group.whole.end(), part.near.begin(), part.near.end());

@@ -1,6 +1,6 @@
 // Pieces as data: the first one, checks, and section normals.
-#include "volume/base/error.h"
 #include "volume/cut/piece.h"
+#include "volume/base/error.h"
 
 #include <algorithm>
 #include <string>

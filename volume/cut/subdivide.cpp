@@ -14,7 +14,8 @@ namespace pith {
 namespace {
 
 constexpr std::size_t tets_per_block = 1024;
-constexpr std::size_t edges_per_block = 512;
+/// Edges in a block: evaluating a level set takes longer than waking a thread, interpolating does not.
+std::size_t edges_per_block(const GroupField& field) { return field.level_set ? 256 : 8192; }
 
 using Corners = std::array<VertexId, 4>;
 using Tags = std::array<FaceTag, 4>;
@@ -142,7 +143,7 @@ GroupCut subdivided(const Pieces& pieces, const TetMesh& root, const Boundary& b
     const Vec3d &from = pieces.position(root, edges.low(i)), &to = pieces.position(root, edges.high(i));
     vertices.position[i] = from + fraction[i] * (to - from);
   };
-  parallel_for(count, edges_per_block, [&](std::size_t i) {
+  parallel_for(count, edges_per_block(field), [&](std::size_t i) {
     const VertexId a = edges.low(i), b = edges.high(i);
     vertices.added[i] = {a, b, cut};
     fraction[i] = zero_on_edge(field.level_set, group.placement, pieces.position(root, a), pieces.position(root, b),
@@ -163,12 +164,22 @@ GroupCut subdivided(const Pieces& pieces, const TetMesh& root, const Boundary& b
   // carry a section face.
   result.below.resize(result.piece.size());
   result.above.resize(result.piece.size());
+  std::vector<std::array<std::size_t, 2>> parts(result.piece.size(), {0, 0}); // of crossed tets
+  for (const TetReference& tet : crossed) {
+    const auto tets = tets_made(pattern_of(tet.corner(pieces, root)));
+    for (int s = 0; s < 2; ++s) parts[row_of_piece[tet.piece]][s] += tets[s];
+  }
   auto next_section = section.begin();
   for (std::size_t g = 0; g < group.piece.size(); ++g) {
     const std::uint32_t p = group.piece[g];
     if (sides.seen[p] != side_crossed) continue;
     const std::vector<CutTet>& old = pieces.piece[p].cut;
     std::vector<CutTet>&below = result.below[row_of_piece[p]], &above = result.above[row_of_piece[p]];
+    std::array<std::size_t, 2> kept = {0, 0};
+    for (const std::uint8_t side : sides.cut[g])
+      if (side != side_crossed) ++kept[side == side_above];
+    below.reserve(kept[0] + parts[row_of_piece[p]][0]);
+    above.reserve(kept[1] + parts[row_of_piece[p]][1]);
     for (std::size_t j = 0; j < old.size(); ++j) {
       const std::uint8_t side = sides.cut[g][j];
       if (side == side_crossed) continue;
