@@ -4,7 +4,6 @@
 #include "volume/base/parallel.h"
 #include "volume/base/random.h"
 #include "volume/cut/cut.h"
-#include "volume/mesh/region_measure.h"
 
 #include <Eigen/Geometry>
 
@@ -155,6 +154,7 @@ Measured recut_1m(const Settings& settings) {
   constexpr int cells = 55;
   const TetMesh root = jittered_cube(cells);
   const Boundary boundary = boundary_of(root);
+  const double prepared = median_seconds(settings.times(3), {}, [&] { keep(Cutter(root, boundary)); });
   Cutter cutter(root, boundary);
   const Vec3d middle = Vec3d::Constant(0.5 * cells);
   const double radius = std::cbrt(0.01 * 3 / (4 * 3.14159265)) * cells;
@@ -166,8 +166,8 @@ Measured recut_1m(const Settings& settings) {
   const double all = 1e3 * median_seconds(
                                settings.times(51), [&] { pieces = small; },
                                [&] { tets_cut = cutter.cut(pieces, *field, {.only = {0}}).tets_cut; });
-  return {all, fmt::format("{} tets, the piece {}, {} cut", root.tet_count(),
-                           measure(small, 0, root).whole_tets + small.piece[0].cut.size(), tets_cut)};
+  return {all, fmt::format("{} tets, the piece {}, {} cut; the Cutter made once in {:.2f} s", root.tet_count(),
+                           measure(small, 0, root).whole_tets + small.piece[0].cut.size(), tets_cut, prepared)};
 }
 
 /// What a hundred random planes in a row leave.
@@ -205,26 +205,15 @@ Hundred hundred_planes(const TetMesh& root, double size, double snap, bool large
   }
   std::size_t tets = 0;
   double dihedral = 4, off = 0, sum = 0, smallest = 1e300;
-  std::vector<PieceMeasure> measured(pieces.piece.size());
-  if (pieces.piece.size() < 1000) {
-    for (std::uint32_t p = 0; p < pieces.piece.size(); ++p) measured[p] = measure(pieces, p, root);
-  } else { // a pass over the labels for each would take too long
-    for (const TetId t : all_ids<TetId>(root.tet_count()))
-      if (pieces.label[t] != Pieces::was_cut) {
-        measured[pieces.label[t]].volume += signed_volume(root, t);
-        ++measured[pieces.label[t]].whole_tets;
-      }
-  }
+  const std::vector<PieceMeasure> measured = measures_of(pieces, root);
   for (std::uint32_t p = 0; p < pieces.piece.size(); ++p) {
-    const bool by_hand = pieces.piece.size() >= 1000;
-    tets += measured[p].whole_tets + pieces.piece[p].cut.size();
+    tets += measured[p].whole_tets + measured[p].cut_tets;
+    dihedral = std::min(dihedral, measured[p].minimum_dihedral);
+    sum += measured[p].volume;
     for (const CutTet& tet : pieces.piece[p].cut) {
       std::array<Vec3d, 4> x;
       for (int i = 0; i < 4; ++i) x[i] = pieces.position(root, tet.corner[i]);
-      const double one = (x[1] - x[0]).cross(x[2] - x[0]).dot(x[3] - x[0]) / 6;
-      smallest = std::min(smallest, one);
-      dihedral = std::min(dihedral, smallest_dihedral(x));
-      if (by_hand) measured[p].volume += one;
+      smallest = std::min(smallest, (x[1] - x[0]).cross(x[2] - x[0]).dot(x[3] - x[0]) / 6);
       for (int i = 0; i < 4; ++i)
         for (const int v : facet_corners[i]) {
           if (!tet.face[i].is_section()) continue;
@@ -232,7 +221,6 @@ Hundred hundred_planes(const TetMesh& root, double size, double snap, bool large
           off = std::max(off, std::abs(normal[k].dot(x[v]) - offset[k]));
         }
     }
-    sum += measured[p].volume;
   }
   const double whole = measure(whole_piece(root), 0, root).volume;
   const double growth = static_cast<double>(tets) / static_cast<double>(root.tet_count());

@@ -33,7 +33,7 @@ public:
         shape ? std::filesystem::path() : input(recipe_.surface.file, where);
     if (!path) return;
     try {
-      surface = surface_of(recipe_.surface, *path);
+      surface = surface_of(recipe_.surface, folder_, "/surface");
     } catch (const std::runtime_error& error) {
       add(where, error.what(), "give a closed surface");
       return;
@@ -79,7 +79,7 @@ public:
 
   void look_at_divides() {
     for (std::size_t i = 0; i < recipe_.divides.size(); ++i)
-      if (const std::optional<SurfaceSource>& source = recipe_.divides[i].surface)
+      if (const std::optional<SurfaceSource>& source = recipe_.divides[i].surface; source && source->shape.empty())
         input(source->file, "/divide/" + std::to_string(i) + "/surface/file");
   }
 

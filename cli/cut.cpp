@@ -142,8 +142,8 @@ void run(const CLI::App& app, const CutVerbOptions& options, const Session& sess
 
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   Json pieces = Json::array();
-  for (std::uint32_t piece = 0; piece < file.pieces.piece.size(); ++piece) {
-    const PieceMeasure measured = measure(file.pieces, piece, mesh);
+  for (const PieceMeasure& measured : measures_of(file.pieces, mesh)) {
+    const std::size_t piece = pieces.size();
     const Vec3d centroid = file.pieces.piece[piece].placement(measured.centroid);
     pieces.push_back({{"volume", measured.volume},
                       {"centroid", {centroid.x(), centroid.y(), centroid.z()}},

@@ -1,7 +1,8 @@
 #include "cli/pieces_report.h"
 
+#include "volume/base/disjoint_sets.h"
+
 #include <algorithm>
-#include <numeric>
 
 namespace pith::cli {
 namespace {
@@ -11,11 +12,6 @@ struct Side {
   std::uint32_t a, b, triangle;
   auto operator<=>(const Side&) const = default;
 };
-
-std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
 
 } // namespace
 
@@ -40,8 +36,7 @@ PieceReport report_of(const Pieces& pieces, std::uint32_t piece, const Model& mo
   std::sort(side.begin(), side.end());
 
   // Corners of triangles (3t + k) that stand on one vertex are joined across shared edges: one fan is one set.
-  std::vector<std::uint32_t> parent(3 * surface.triangle.size());
-  std::iota(parent.begin(), parent.end(), 0u);
+  DisjointSets corners(3 * surface.triangle.size());
   const auto corner_at = [&](std::uint32_t t, std::uint32_t vertex) {
     const auto& corner = surface.triangle[t].corner;
     return 3 * t + (corner[0] == vertex ? 0u : corner[1] == vertex ? 1u : 2u);
@@ -53,14 +48,13 @@ PieceReport report_of(const Pieces& pieces, std::uint32_t piece, const Model& mo
     if (end - begin > 2) ++report.non_manifold_edges;
     for (std::size_t i = begin + 1; i < end; ++i)
       for (const std::uint32_t vertex : {side[begin].a, side[begin].b})
-        parent[root_of(parent, corner_at(side[i].triangle, vertex))] =
-            root_of(parent, corner_at(side[begin].triangle, vertex));
+        corners.join(corner_at(side[i].triangle, vertex), corner_at(side[begin].triangle, vertex));
     begin = end;
   }
   std::vector<std::uint32_t> fans(surface.vertex.size(), 0);
   for (std::uint32_t t = 0; t < surface.triangle.size(); ++t)
     for (std::uint32_t k = 0; k < 3; ++k)
-      if (root_of(parent, 3 * t + k) == 3 * t + k) ++fans[surface.triangle[t].corner[k]];
+      if (corners.representative(3 * t + k) == 3 * t + k) ++fans[surface.triangle[t].corner[k]];
   report.non_manifold_vertices =
       static_cast<std::size_t>(std::count_if(fans.begin(), fans.end(), [](std::uint32_t n) { return n > 1; }));
   return report;

@@ -1,16 +1,14 @@
 #include "recipe/build.h"
 
 #include "recipe/plain_layer.h"
-#include "recipe/stage_keys.h"
+#include "recipe/recipe_keys.h"
 #include "recipe/stage_run.h"
 #include "recipe/steps.h"
 #include "recipe/surface_source.h"
 #include "volume/base/error.h"
 #include "volume/cut/divide.h"
 #include "volume/exemplar/procedural.h"
-#include "volume/io/atomic_file.h"
 #include "volume/io/exemplar_io.h"
-#include "volume/io/mesh_io.h"
 #include "volume/mesh/refine.h"
 
 #include <algorithm>
@@ -22,29 +20,12 @@ namespace {
 
 const Vec3d neutral_grey{0.5, 0.5, 0.5}; ///< regions that no solid fills
 
-/// An input file, found from the recipe's folder.
-fs::path input_path(const fs::path& folder, const std::string& file, const std::string& where) {
-  const fs::path path = fs::path(file).is_absolute() ? fs::path(file) : folder / file;
-  std::error_code error;
-  if (!fs::exists(path, error))
-    throw InvalidInput(where, "\"" + file + "\" does not exist", "paths count from the recipe's folder");
-  if (!fs::is_regular_file(path, error)) throw InvalidInput(where, "\"" + file + "\" is not a file", "name a file");
-  return path;
-}
-
-/// The keys of one solid's stages.
-struct SolidKeys {
-  Key depth, along, around, frames, exemplar, fill; ///< of fields that the solid has not: zeros
-  std::vector<Key> scatter_thing, scatter, paste_thing, paste;
-};
-
 class RecipeBuild {
 public:
   RecipeBuild(StageRun& run, const Recipe& recipe, const fs::path& folder)
-      : run_(run), recipe_(recipe), folder_(folder) {}
+      : run_(run), recipe_(recipe), folder_(folder), keys_(announced_keys(run, recipe, folder)) {}
 
   BuildResult result() {
-    make_keys();
     BuildResult built;
     const auto tets = root();
     built.note = tets->note;
@@ -66,184 +47,30 @@ public:
 
 private:
   std::string where(const std::string& path) const { return recipe_.file + ": " + path; }
-  static std::string numbered(const char* stage, std::size_t i) {
-    return std::string(stage) + " " + std::to_string(i);
-  }
-  static std::string numbered(const char* stage, std::size_t i, std::size_t k) {
-    return numbered(stage, i) + "." + std::to_string(k);
-  }
   std::string solid_path(std::size_t i) const { return where("/solids/" + std::to_string(i)); }
-
-  void make_keys() {
-    KeyMaker surface = run_.key("surface").add(recipe_.surface.scale);
-    if (recipe_.surface.shape.empty()) {
-      surface_path_ = input_path(folder_, recipe_.surface.file, where("/surface/file"));
-      surface.add(key_of(file_content(surface_path_))).add(surface_path_.extension().string());
-    } else {
-      surface.add(recipe_.surface.shape).add(recipe_.surface.triangles);
-    }
-    surface_key_ = surface.key();
-    run_.announce("surface", surface_key_);
-    KeyMaker tets = run_.key("tets").add(surface_key_);
-    Key meshed = add(tets, meshing()).key();
-    run_.announce("tets", meshed);
-    meshed_keys_.push_back(meshed);
-    for (std::size_t k = 0; k < recipe_.divides.size(); ++k) {
-      KeyMaker divided = run_.key("divide").add(meshed_keys_.back());
-      if (recipe_.divides[k].surface) {
-        const fs::path path = divider_path(k);
-        divided.add(path.extension().string()).add(key_of(file_content(path)));
-      }
-      meshed_keys_.push_back(add(divided, recipe_.divides[k]).key());
-      run_.announce(numbered("divide", k), meshed_keys_.back());
-    }
-    KeyMaker refined = run_.key("refine").add(meshed_keys_.back());
-    for (const std::vector<Vec3d>& stroke : axis_strokes()) refined.add(stroke);
-    tets_key_ = refined.key();
-    run_.announce("refine", tets_key_);
-    for (std::size_t i = 0; i < recipe_.solids.size(); ++i) {
-      const Solid& solid = recipe_.solids[i];
-      SolidKeys keys;
-      if (solid.kind == Solid::Kind::lapped) {
-        KeyMaker frames = run_.key("frames").add(tets_key_).add(static_cast<int>(solid.region));
-        for (const SolidField& field : fields_of(solid)) {
-          if (!field.constraints->empty()) {
-            KeyMaker maker = run_.key("depth").add(tets_key_).add(static_cast<int>(solid.region));
-            keys.*field.key = add(add(maker, *field.constraints), solid.depth_options).key();
-            run_.announce(numbered(field.name, i), keys.*field.key);
-          }
-          frames.add(keys.*field.key);
-        }
-        frames.add(solid.scale);
-        keys.frames = add(add(add(frames, solid.orientation), solid.local_scale), solid.frame).key();
-        keys.exemplar = exemplar_key(solid.exemplar, solid_path(i) + "/exemplar");
-        KeyMaker fill = run_.key("fill").add(keys.frames).add(keys.exemplar);
-        keys.fill = add(fill, solid.fill).key();
-        run_.announce(numbered("frames", i), keys.frames);
-        run_.announce(numbered("exemplar", i), keys.exemplar);
-        run_.announce(numbered("fill", i), keys.fill);
-      }
-      make_thing_keys(i, keys);
-      solid_keys_.push_back(keys);
-    }
-    Key before = tets_key_;
-    for (std::size_t k = 0; k < recipe_.cuts.size(); ++k) {
-      KeyMaker cut = run_.key("cut").add(before);
-      if (const auto& surface = recipe_.cuts[k].surface; surface && surface->shape.empty())
-        cut.add(key_of(
-            file_content(input_path(folder_, surface->file, where("/cuts/" + std::to_string(k) + "/surface/file")))));
-      if (recipe_.cuts[k].depth)
-        for (std::size_t i = 0; i < recipe_.solids.size(); ++i)
-          if (recipe_.solids[i].region == recipe_.cuts[k].depth->region)
-            cut.add(solid_keys_[i].*fields_of(recipe_.solids[i]).front().key);
-      step_keys_.push_back(before = add(cut, recipe_.cuts[k]).key());
-      run_.announce(numbered("cut", k), before);
-    }
-    for (std::size_t k = 0; k < recipe_.moves.size(); ++k) {
-      KeyMaker move = run_.key("move").add(before);
-      step_keys_.push_back(before = add(move, recipe_.moves[k]).key());
-      run_.announce(numbered("move", k), before);
-    }
-  }
-
-  /// The scalar fields of a solid.
-  struct SolidField {
-    const char* name;
-    const std::vector<DepthConstraint>* constraints;
-    Key SolidKeys::*key;
-  };
-  static std::array<SolidField, 3> fields_of(const Solid& solid) {
-    return {{{"depth", &solid.depth, &SolidKeys::depth},
-             {"along", &solid.along, &SolidKeys::along},
-             {"around", &solid.around, &SolidKeys::around}}};
-  }
-
-  /// Pastes stand on the frames alone, or on the tets where they follow none; a scatter also on what it keeps clear
-  /// of: the pastes and the scatters before it.
-  void make_thing_keys(std::size_t i, SolidKeys& keys) {
-    const Solid& solid = recipe_.solids[i];
-    const bool framed = solid.kind == Solid::Kind::lapped;
-    const auto thing_key = [&](const ThingSource& source, const std::string& at) {
-      KeyMaker maker = run_.key("thing").add(exemplar_key(source.exemplar, at + "/exemplar")).add(bool(source.mask));
-      if (source.mask) add(maker, *source.mask);
-      const Key key = maker.key();
-      if (thing_names_.emplace(key, numbered("thing", thing_names_.size())).second)
-        run_.announce(thing_names_[key], key);
-      return key;
-    };
-    for (std::size_t k = 0; k < solid.pastes.size(); ++k) {
-      const PasteStep& step = solid.pastes[k];
-      keys.paste_thing.push_back(thing_key(step.thing, solid_path(i) + "/pastes/" + std::to_string(k)));
-      const bool follows = framed && (step.options.in_frame || step.options.follow == Follow::warped);
-      KeyMaker maker = run_.key("paste").add(follows ? keys.frames : tets_key_).add(keys.paste_thing.back());
-      keys.paste.push_back(add(maker.add(static_cast<int>(solid.region)), step).key());
-      run_.announce(numbered("paste", i, k), keys.paste.back());
-    }
-    for (std::size_t k = 0; k < solid.scatter.size(); ++k) {
-      keys.scatter_thing.push_back(
-          thing_key(solid.scatter[k].thing, solid_path(i) + "/scatter/" + std::to_string(k)));
-      KeyMaker maker = run_.key("scatter").add(framed ? keys.frames : tets_key_).add(keys.scatter_thing.back());
-      for (const Key& taken : keys.paste) maker.add(taken);
-      for (const Key& taken : keys.scatter) maker.add(taken);
-      keys.scatter.push_back(add(maker.add(static_cast<int>(solid.region)), solid.scatter[k]).key());
-      run_.announce(numbered("scatter", i, k), keys.scatter.back());
-    }
-  }
-
-  Key exemplar_key(const ExemplarSource& source, const std::string& at) const {
-    KeyMaker maker = run_.key("exemplar");
-    if (source.file.empty()) return maker.add(source.procedural).add(source.resolution).add(source.seed).key();
-    const fs::path path = input_path(folder_, source.file, at + "/file");
-    maker.add(path.extension().string()).add(key_of(file_content(path)));
-    if (source.tile) {
-      maker.add("tile").add(source.tile->border);
-      for (const bool along : source.tile->axis) maker.add(along);
-    }
-    return maker.key();
-  }
-
-  /// Strokes inside the solids that mark an innermost place: they should run through vertices.
-  std::vector<std::vector<Vec3d>> axis_strokes() const {
-    std::vector<std::vector<Vec3d>> strokes;
-    for (const Solid& solid : recipe_.solids)
-      for (const DepthConstraint& constraint : solid.depth)
-        if (constraint.value == 1 && constraint.stroke.size() > 1) strokes.push_back(constraint.stroke);
-    return strokes;
-  }
-
-  TetrahedralizeOptions meshing() const {
-    TetrahedralizeOptions options = recipe_.tetrahedralize;
-    options.core = axis_strokes();
-    return options;
-  }
 
   /// The root: what TetGen made, refined once for all that follows.
   std::shared_ptr<const TetrahedralizeResult> root() {
-    return run_.result<TetrahedralizeResult>("refine", tets_key_, true, [&](const Progress&) {
+    return run_.result<TetrahedralizeResult>("refine", keys_.root, true, [&](const Progress&) {
       const auto meshed = divided(recipe_.divides.size());
       TetrahedralizeResult result = *meshed;
-      RefineResult refined = refine(meshed->mesh, meshed->input, {.stroke = axis_strokes()});
+      RefineResult refined = refine(meshed->mesh, meshed->input, {.stroke = axis_strokes(recipe_)});
       result.mesh = std::move(refined.mesh);
       result.input = std::move(refined.input);
       return result;
     });
   }
 
-  fs::path divider_path(std::size_t k) const {
-    return input_path(folder_, recipe_.divides[k].surface->file,
-                      where("/divide/" + std::to_string(k) + "/surface/file"));
-  }
-
   /// The mesh after the first `count` divides: the last that is remembered, and from there on one by one.
   std::shared_ptr<const TetrahedralizeResult> divided(std::size_t count) {
     if (count == 0) return tets();
     const std::size_t k = count - 1;
-    return run_.result<TetrahedralizeResult>(numbered("divide", k), meshed_keys_[count], true, [&](const Progress&) {
+    return run_.result<TetrahedralizeResult>(numbered("divide", k), keys_.meshed[count], true, [&](const Progress&) {
       TetrahedralizeResult result = *divided(k);
       const DivideStep& step = recipe_.divides[k];
       const std::string at = where("/divide/" + std::to_string(k));
       const auto level_set = step.surface
-                                 ? level_set_of(read_tri_mesh(divider_path(k), step.surface->scale), at + "/surface")
+                                 ? level_set_of(surface_of(*step.surface, folder_, at + "/surface"), at + "/surface")
                                  : level_set_of(step.shape, at);
       DivideResult parted = divide(result.mesh, result.input, *level_set, {.only = step.only, .snap = step.snap}, at);
       result.mesh = std::move(parted.mesh);
@@ -253,11 +80,12 @@ private:
   }
 
   std::shared_ptr<const TetrahedralizeResult> tets() {
-    return run_.result<TetrahedralizeResult>("tets", meshed_keys_[0], true, [&](const Progress& progress) {
-      const auto surface = run_.result<TriMesh>("surface", surface_key_, false, [&](const Progress&) {
-        return surface_of(recipe_.surface, surface_path_);
+    return run_.result<TetrahedralizeResult>("tets", keys_.meshed[0], true, [&](const Progress& progress) {
+      const auto surface = run_.result<TriMesh>("surface", keys_.surface, false, [&](const Progress&) {
+        return surface_of(recipe_.surface, folder_, where("/surface"));
       });
-      TetrahedralizeResult result = tetrahedralize(*surface, surface_name(recipe_.surface), meshing(), progress);
+      TetrahedralizeResult result =
+          tetrahedralize(*surface, surface_name(recipe_.surface), meshing_of(recipe_), progress);
       result.surface = {};
       return result;
     });
@@ -289,7 +117,7 @@ private:
   }
 
   std::shared_ptr<const Thing> thing_of_source(const Key& key, const ThingSource& source, const std::string& at) {
-    return run_.result<Thing>(thing_names_.at(key), key, true, [&](const Progress&) {
+    return run_.result<Thing>(keys_.thing_name.at(key), key, true, [&](const Progress&) {
       return thing_of(exemplar_of(source.exemplar, at + "/exemplar"), source.mask);
     });
   }
@@ -298,7 +126,7 @@ private:
   /// have the same channels.
   void add_things(Model& model, std::size_t i) {
     const Solid& solid = recipe_.solids[i];
-    const SolidKeys& keys = solid_keys_[i];
+    const SolidKeys& keys = keys_.solid[i];
     if (solid.scatter.empty() && solid.pastes.empty()) return;
     std::optional<ScatterGround> made; // only when something has to be computed: the locator takes time
     const auto ground = [&]() -> const ScatterGround& {
@@ -356,7 +184,7 @@ private:
 
   Layer lapped_layer(Model& model, std::size_t i, std::vector<std::uint8_t>& vertex_taken) {
     const Solid& solid = recipe_.solids[i];
-    const SolidKeys& keys = solid_keys_[i];
+    const SolidKeys& keys = keys_.solid[i];
     std::array<std::shared_ptr<const DepthField>, 3> field; // depth, along, around
     for (std::size_t f = 0; f < field.size(); ++f) {
       const SolidField one = fields_of(solid)[f];
@@ -453,7 +281,7 @@ private:
     const std::size_t cuts = recipe_.cuts.size();
     const bool is_cut = k < cuts;
     const std::string name = is_cut ? numbered("cut", k) : numbered("move", k - cuts);
-    return run_.result<Pieces>(name, step_keys_[k], true, [&](const Progress&) {
+    return run_.result<Pieces>(name, keys_.step[k], true, [&](const Progress&) {
       Pieces pieces = *pieces_after(model, k);
       if (is_cut)
         apply_cut(pieces, {model, locator(model), folder_}, recipe_.cuts[k], where("/cuts/" + std::to_string(k)));
@@ -472,19 +300,14 @@ private:
   StageRun& run_;
   const Recipe& recipe_;
   const fs::path& folder_;
-  fs::path surface_path_;
-  Key surface_key_, tets_key_;
-  std::vector<Key> meshed_keys_; ///< after meshing, and after each divide
-  std::vector<SolidKeys> solid_keys_;
+  RecipeKeys keys_;
   struct SolidFields {
     std::shared_ptr<const DepthField> depth;
     std::shared_ptr<const FrameField> frames;
   };
   std::map<std::size_t, SolidFields> solid_fields_; ///< of lapped solids
-  std::map<Key, std::string> thing_names_;          ///< stages
   std::vector<FillReport> fills_;
   std::vector<ScatterReport> scatters_;
-  std::vector<Key> step_keys_;
   std::unique_ptr<Locator> locator_;
 };
 

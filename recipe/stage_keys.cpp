@@ -124,9 +124,7 @@ KeyMaker& add(KeyMaker& maker, const SplotchOptions& mask) {
 KeyMaker& add(KeyMaker& maker, const DivideStep& step) {
   add(maker, step.shape).add(static_cast<std::uint64_t>(step.only.size()));
   for (const std::int32_t region : step.only) maker.add(static_cast<int>(region));
-  maker.add(step.surface.has_value()); // the file's content is the builder's to add
-  if (step.surface) maker.add(step.surface->scale);
-  return maker.add(step.snap);
+  return maker.add(step.surface.has_value()).add(step.snap);
 }
 
 KeyMaker& add(KeyMaker& maker, const PasteStep& step) {
@@ -168,9 +166,7 @@ KeyMaker& add(KeyMaker& maker, const ScatterStep& step) {
 KeyMaker& add(KeyMaker& maker, const CutStep& step) {
   add(maker, step.shape);
   maker.add(step.join).add(step.surface.has_value()).add(step.depth.has_value());
-  if (step.surface) // a file's content is the builder's to add
-    maker.add(step.surface->shape).add(step.surface->triangles).add(step.surface->scale);
-  if (step.depth) maker.add(static_cast<int>(step.depth->region)).add(step.depth->value); // and the depth's key
+  if (step.depth) maker.add(static_cast<int>(step.depth->region)).add(step.depth->value);
   maker.add(static_cast<int>(step.keep)).add(step.spread).add(step.snap).add(step.only);
   maker.add(static_cast<std::uint64_t>(step.placements.size()));
   for (const PiecePlacement& stood : step.placements) {

@@ -12,11 +12,11 @@ KeyMaker& add(KeyMaker& maker, const std::vector<AxisStroke>& strokes);
 KeyMaker& add(KeyMaker& maker, const std::vector<ScaleConstraint>& constraints);
 KeyMaker& add(KeyMaker& maker, const FrameOptions& options);
 KeyMaker& add(KeyMaker& maker, const LapOptions& options);
-KeyMaker& add(KeyMaker& maker, const DivideStep& step);
+KeyMaker& add(KeyMaker& maker, const DivideStep& step); ///< without its surface
 KeyMaker& add(KeyMaker& maker, const SplotchOptions& mask);
 KeyMaker& add(KeyMaker& maker, const PasteStep& step);   ///< without its thing
 KeyMaker& add(KeyMaker& maker, const ScatterStep& step); ///< without its thing
-KeyMaker& add(KeyMaker& maker, const CutStep& step);
+KeyMaker& add(KeyMaker& maker, const CutStep& step);     ///< without its surface, and what a depth stands on
 KeyMaker& add(KeyMaker& maker, const MoveStep& step);
 
 } // namespace pith

@@ -58,23 +58,31 @@ CutResult join_named(Pieces& pieces, const StepContext& context, const CutStep& 
   return result;
 }
 
-/// The cut itself; `level_set` is null for one by depth.
-CutResult cut_pieces(Pieces& work, const StepContext& context, const CutStep& step, const LevelSet* level_set,
-                     const CutOptions& options, const std::string& where) {
+/// What a step cuts by.
+struct Knife {
+  std::unique_ptr<LevelSet> level_set;
+  std::vector<double> depth; ///< where there is no level set: depth less the step's value, by vertex id
+};
+
+Knife knife_of(const Pieces& pieces, const StepContext& context, const CutStep& step, const std::string& where) {
+  if (step.depth) return {nullptr, depth_values(pieces, context.model, *step.depth, where + "/depth")};
+  if (step.surface)
+    return {level_set_of(surface_of(*step.surface, context.folder, where + "/surface"), where + "/surface"), {}};
+  return {level_set_of(step.shape, where), {}};
+}
+
+CutResult cut_pieces(Pieces& work, const StepContext& context, const Knife& knife, const CutOptions& options,
+                     const std::string& where) {
   const Model& model = context.model;
   try {
-    if (step.depth) {
-      const std::vector<double> value = depth_values(work, model, *step.depth, where + "/depth");
-      return context.cutter ? context.cutter->cut_by_values(work, value, nullptr, options)
-                            : cut_by_values(work, model.mesh, model.boundary, value, nullptr, options);
-    }
-    return context.cutter ? context.cutter->cut(work, *level_set, options)
-                          : cut(work, model.mesh, model.boundary, *level_set, options);
+    Cutter once = Cutter::for_one_cut(model.mesh, model.boundary);
+    Cutter& cutter = context.cutter ? *context.cutter : once;
+    return knife.level_set ? cutter.cut(work, *knife.level_set, options)
+                           : cutter.cut_by_values(work, knife.depth, nullptr, options);
   } catch (const InvalidInput& error) {
     // What is wrong and how to mend it, at the place in the recipe instead of the library's.
     std::string what = error.what();
-    if (!what.starts_with("cut: ")) throw;
-    what.erase(0, 5);
+    if (what.starts_with("cut: ")) what.erase(0, 5);
     const std::size_t mend = what.rfind("; ");
     throw InvalidInput(where, "cannot be made: " + what.substr(0, mend),
                        mend == std::string::npos ? "move the cut so that it passes through the solid"
@@ -82,16 +90,13 @@ CutResult cut_pieces(Pieces& work, const StepContext& context, const CutStep& st
   }
 }
 
-/// On which side of the cut a piece stands that it left whole.
-double side_of_piece(const Pieces& work, std::uint32_t piece, const StepContext& context, const CutStep& step,
-                     const LevelSet* level_set) {
-  const Vec3d inside = rest_point_in(work, piece, context.model.mesh);
-  if (level_set) return level_set->value(work.piece[piece].placement(inside));
+/// The knife's value at a point of a piece that it left whole: the sign of all of it.
+double value_in(const Pieces& pieces, std::uint32_t piece, const StepContext& context, const Knife& knife) {
+  const Vec3d inside = rest_point_in(pieces, piece, context.model.mesh);
+  if (knife.level_set) return knife.level_set->value(pieces.piece[piece].placement(inside));
   const Location at = context.locator.locate(inside);
-  const std::vector<double> value =
-      depth_values(whole_piece(context.model.mesh), context.model, *step.depth, "depth");
   double result = 0;
-  for (int i = 0; i < 4; ++i) result += at.barycentric[i] * value[context.model.mesh.corner[at.tet][i]];
+  for (int i = 0; i < 4; ++i) result += at.barycentric[i] * knife.depth[context.model.mesh.corner[at.tet][i]];
   return result;
 }
 
@@ -100,11 +105,8 @@ double side_of_piece(const Pieces& work, std::uint32_t piece, const StepContext&
 CutResult apply_cut(Pieces& pieces, const StepContext& context, const CutStep& step, const std::string& where) {
   const TetMesh& root = context.model.mesh;
   const Locator& locator = context.locator;
-  std::unique_ptr<LevelSet> level_set;
-  if (step.surface && step.join.empty())
-    level_set = level_set_of(surface_of(*step.surface, context.folder / step.surface->file), where + "/surface");
-  else if (!step.depth && step.join.empty())
-    level_set = level_set_of(step.shape, where);
+  Knife knife;
+  if (step.join.empty()) knife = knife_of(pieces, context, step, where);
   Pieces work = pieces;
   for (std::size_t i = 0; i < step.placements.size(); ++i) {
     const PiecePlacement& stood = step.placements[i];
@@ -125,7 +127,7 @@ CutResult apply_cut(Pieces& pieces, const StepContext& context, const CutStep& s
   }
   std::sort(options.only.begin(), options.only.end());
 
-  CutResult result = cut_pieces(work, context, step, level_set.get(), options, where);
+  CutResult result = cut_pieces(work, context, knife, options, where);
   separate_pieces(work, root, result);
   if (step.spread > 0) spread(work, result, root, step.spread);
 
@@ -138,7 +140,7 @@ CutResult apply_cut(Pieces& pieces, const StepContext& context, const CutStep& s
       const bool in_scope =
           options.only.empty() || std::binary_search(options.only.begin(), options.only.end(), origin.piece);
       // A piece that the cut left whole stands on one side of it.
-      if (side == 0 && in_scope) side = side_of_piece(work, piece, context, step, level_set.get()) < 0 ? -1 : 1;
+      if (side == 0 && in_scope) side = value_in(work, piece, context, knife) < 0 ? -1 : 1;
       if (side == 0 || side == kept_side) keep.push_back(piece);
     }
     if (keep.empty()) throw InvalidInput(where, "keeps nothing", "keep the other side");

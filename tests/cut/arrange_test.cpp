@@ -54,6 +54,11 @@ TEST(Arrange, JoiningGivesTheSamePoints) {
   EXPECT_NEAR(measure(pieces, 1, mesh).volume, measure(before, 1, mesh).volume + measure(before, 3, mesh).volume,
               1e-9);
   check_pieces(pieces, mesh, boundary);
+  const std::vector<PieceMeasure> all = measures_of(pieces, mesh);
+  for (std::uint32_t p = 0; p < 3; ++p) {
+    EXPECT_EQ(all[p].volume, measure(pieces, p, mesh).volume);
+    EXPECT_EQ(all[p].centroid, measure(pieces, p, mesh).centroid);
+  }
   join_pieces(pieces, std::vector<std::uint32_t>{0, 1, 2});
   ASSERT_EQ(pieces.piece.size(), 1u);
   check_pieces(pieces, mesh, boundary);

@@ -15,12 +15,6 @@
 namespace pith {
 namespace {
 
-struct Solid {
-  TetMesh mesh;
-  Boundary boundary;
-  explicit Solid(TetMesh m) : mesh(std::move(m)), boundary(boundary_of(mesh)) {}
-};
-
 enum class Kind { noise, sparse_noise, lattice, smooth, snapped_smooth };
 
 /// Values at all vertices of the pieces.
@@ -172,6 +166,28 @@ TEST(CutProperty, SectionAndZeroSetLieWithinASmallHausdorffDistance) {
     RecordProperty((plane ? "plane_" : "sphere_") + std::to_string(seed),
                    ::testing::PrintToString(to_zero) + " " + ::testing::PrintToString(to_section));
   }
+}
+
+/// Not a number in a part of space.
+class Broken final : public LevelSet {
+public:
+  double value(const Vec3d& x) const override {
+    return x.x() > 0 ? std::numeric_limits<double>::quiet_NaN() : x.x() - 1;
+  }
+  Vec3d gradient(const Vec3d&) const override { return Vec3d::UnitX(); }
+};
+
+TEST(CutProperty, ARefusedCutLeavesNothingBehindInTheCutter) {
+  const Solid ball(tet_ball(10, 10));
+  Cutter cutter(ball.mesh, ball.boundary);
+  Pieces pieces = whole_piece(ball.mesh);
+  EXPECT_NE(refusal([&] { cutter.cut(pieces, Broken()); }).find("nan"), std::string::npos);
+  const auto beside = level_set_of(PlaneCut{{0, 0, 1}, 900});
+  EXPECT_NE(refusal([&] { cutter.cut(pieces, *beside); }).find("nothing is cut"), std::string::npos);
+  Pieces fresh = whole_piece(ball.mesh);
+  cutter.cut(pieces, *level_set_of(PlaneCut{{0, 1, 1}, 1}));
+  cut(fresh, ball.mesh, ball.boundary, *level_set_of(PlaneCut{{0, 1, 1}, 1}));
+  EXPECT_TRUE(same_bits(pieces, fresh));
 }
 
 TEST(CutProperty, ClustersChangeNothing) {

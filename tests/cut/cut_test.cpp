@@ -9,12 +9,6 @@
 namespace pith {
 namespace {
 
-struct Solid {
-  TetMesh mesh;
-  Boundary boundary;
-  explicit Solid(TetMesh m) : mesh(std::move(m)), boundary(boundary_of(mesh)) {}
-};
-
 Vec3d random_direction(Random& random) {
   for (;;) {
     const Vec3d d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));

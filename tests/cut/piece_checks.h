@@ -12,6 +12,13 @@
 
 namespace pith {
 
+/// A mesh with its boundary.
+struct Solid {
+  TetMesh mesh;
+  Boundary boundary;
+  explicit Solid(TetMesh m) : mesh(std::move(m)), boundary(boundary_of(mesh)) {}
+};
+
 /// One tet of a piece, whole or cut, with the tags of its faces.
 struct PieceTet {
   std::array<VertexId, 4> corner;

@@ -7,6 +7,7 @@
 #include "volume/base/error.h"
 #include "volume/io/mesh_io.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 namespace pith {
@@ -117,6 +118,13 @@ TEST_F(BallCuts, ASurfaceIsAKnifeByItsContent) {
   write_tri_mesh(folder / "knife.obj", testing::sphere_surface(2, 9, {4, 0, 0}));
   EXPECT_GT(volume(build(steps), 0), 1.2 * volume(built, 0));
   EXPECT_THROW(build(R"("cuts": [{"surface": {"file": "none.obj"}}])"), std::runtime_error);
+}
+
+TEST_F(BallCuts, AShapeDividesAndCutsAsAFileDoes) {
+  const std::string kiwi = R"({"surface": {"shape": "kiwi", "triangles": 800, "scale": 0.3}})";
+  const BuildResult divided = build(R"("divide": [)" + kiwi + "]");
+  EXPECT_EQ(*std::max_element(divided.model.mesh.region.begin(), divided.model.mesh.region.end()), 1);
+  EXPECT_EQ(build(R"("cuts": [)" + kiwi + "]").pieces.piece.size(), 2u);
 }
 
 TEST_F(BallCuts, JoinsExplodesAndDrops) {

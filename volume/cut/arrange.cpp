@@ -102,9 +102,8 @@ void explode(Pieces& pieces, const TetMesh& root, double part) {
   std::vector<Vec3d> middle;
   Vec3d sum = Vec3d::Zero();
   double volume = 0;
-  for (std::uint32_t p = 0; p < pieces.piece.size(); ++p) {
-    const PieceMeasure measured = measure(pieces, p, root);
-    middle.push_back(pieces.piece[p].placement(measured.centroid));
+  for (const PieceMeasure& measured : measures_of(pieces, root)) {
+    middle.push_back(pieces.piece[middle.size()].placement(measured.centroid));
     sum += measured.volume * middle.back();
     volume += measured.volume;
   }

@@ -32,11 +32,11 @@ constexpr std::array<std::uint8_t, 81> side_of_code = [] {
 
 std::uint8_t state_of(double value) { return static_cast<std::uint8_t>(1 + (value > 0) - (value < 0)); }
 
-void find_states(const GroupField& field, std::vector<std::uint8_t>& state) {
+void find_states(const PieceGroup& group, const GroupField& field, std::vector<std::uint8_t>& state) {
   const std::span<const double> value = field.value;
   state.resize(value.size());
-  const std::size_t count = field.vertex.empty() ? value.size() : field.vertex.size();
-  const auto vertex = [&](std::size_t i) { return field.vertex.empty() ? i : std::size_t(field.vertex[i].value); };
+  const std::size_t count = group.everything ? value.size() : field.vertex.size();
+  const auto vertex = [&](std::size_t i) { return group.everything ? i : std::size_t(field.vertex[i].value); };
   std::atomic<std::size_t> bad = count;
   parallel_blocks(count, vertices_per_block, [&](std::size_t begin, std::size_t end) {
     bool finite = true;
@@ -244,7 +244,7 @@ Sides sides_of(const Pieces& pieces, const TetMesh& root, const PieceGroup& grou
                const VertexTets* around, std::vector<std::uint8_t> state) {
   Sides sides;
   sides.state = std::move(state);
-  find_states(field, sides.state);
+  find_states(group, field, sides.state);
   classify(pieces, root, group, sides);
   std::vector<VertexId> snapped = snapped_vertices(pieces, root, sides, field);
   std::sort(snapped.begin(), snapped.end());

@@ -60,7 +60,8 @@ struct Sides {
 /// The field of a cut at the vertices of one group.
 struct GroupField {
   std::span<const double> value; ///< by vertex id
-  /// The vertices where it was evaluated: those of all tets that are looked at. Empty: all vertices.
+  /// The vertices where it was evaluated: those of all tets that are looked at. Where the group looks at everything:
+  /// not read, all vertices are.
   std::span<const VertexId> vertex;
   const LevelSet* level_set = nullptr; ///< null: the values' linear interpolation is the field
   double snap = 0;                     ///< fraction of an edge

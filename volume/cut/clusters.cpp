@@ -1,5 +1,6 @@
 #include "volume/cut/clusters.h"
 
+#include "volume/base/morton.h"
 #include "volume/base/parallel.h"
 
 #include <algorithm>
@@ -10,30 +11,18 @@ namespace {
 
 constexpr std::size_t tets_per_cluster = 128;
 
-/// Spreads the lowest 21 bits of x to every third bit.
-std::uint64_t every_third_bit(std::uint64_t x) {
-  x &= 0x1fffff;
-  x = (x | x << 32) & 0x1f00000000ffff;
-  x = (x | x << 16) & 0x1f0000ff0000ff;
-  x = (x | x << 8) & 0x100f00f00f00f00f;
-  x = (x | x << 4) & 0x10c30c30c30c30c3;
-  return (x | x << 2) & 0x1249249249249249;
-}
-
 } // namespace
 
 TetClusters clusters_of(const TetMesh& root) {
   TetClusters result;
   const std::size_t count = root.tet_count();
   const Box box = bounds_of(root);
-  const double cells = 1023 / std::max((box.high - box.low).maxCoeff(), 1e-300);
+  const double cells = 1023 / std::max(box.extent().maxCoeff(), 1e-300);
   std::vector<std::pair<std::uint64_t, TetId>> order(count);
   parallel_for(count, 16384, [&](std::size_t t) {
     const Vec3d at = cells * (barycenter(root, TetId(t)) - box.low);
-    const auto bits = [&](int axis) {
-      return every_third_bit(static_cast<std::uint64_t>(std::clamp(at[axis], 0.0, 1023.0)));
-    };
-    order[t] = {bits(0) | bits(1) << 1 | bits(2) << 2, TetId(t)};
+    const auto cell = [&](int axis) { return static_cast<std::int32_t>(std::clamp(at[axis], 0.0, 1023.0)); };
+    order[t] = {morton_code({cell(0), cell(1), cell(2)}), TetId(t)};
   });
   std::sort(order.begin(), order.end());
 
@@ -46,6 +35,7 @@ TetClusters clusters_of(const TetMesh& root) {
         reach[corner[j]] = std::max(reach[corner[j]], length);
       }
 
+  result.around = tets_around_vertices(root);
   result.cluster.resize(count);
   result.ball.resize((count + tets_per_cluster - 1) / tets_per_cluster);
   parallel_for(result.ball.size(), 64, [&](std::size_t c) {

@@ -1,9 +1,9 @@
 // Which tets of pieces hang together by faces: parting and joining pieces.
+#include "volume/base/disjoint_sets.h"
 #include "volume/base/error.h"
 #include "volume/cut/arrange.h"
 
 #include <algorithm>
-#include <numeric>
 #include <string>
 
 namespace pith {
@@ -19,24 +19,6 @@ Triple face_of(const std::array<VertexId, 4>& corner, int opposite) {
   return key;
 }
 
-/// Disjoint sets; the smallest member stands for each.
-class Sets {
-public:
-  explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t of(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void unite(std::uint32_t a, std::uint32_t b) {
-    a = of(a);
-    b = of(b);
-    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-  }
-
-private:
-  std::vector<std::uint32_t> parent_;
-};
-
 } // namespace
 
 void separate_pieces(Pieces& pieces, const TetMesh& root, CutResult& result) {
@@ -49,7 +31,7 @@ void separate_pieces(Pieces& pieces, const TetMesh& root, CutResult& result) {
       first[p] = static_cast<std::uint32_t>(nodes);
       nodes += pieces.piece[p].cut.size();
     }
-  Sets sets(nodes);
+  DisjointSets sets(nodes);
   const auto fresh = [&](std::uint32_t p) { return p != Pieces::was_cut && first[p] != none; };
   struct Face {
     std::uint32_t piece;
@@ -65,7 +47,7 @@ void separate_pieces(Pieces& pieces, const TetMesh& root, CutResult& result) {
       const TetId other = root.neighbor[t][i];
       if (!other.exists()) continue;
       if (pieces.label[other] == p) {
-        if (other < t) sets.unite(other.value, t.value);
+        if (other < t) sets.join(other.value, t.value);
       } else if (pieces.label[other] == Pieces::was_cut) {
         faces.push_back({p, face_of(root.corner[t], i), t.value});
       }
@@ -79,12 +61,12 @@ void separate_pieces(Pieces& pieces, const TetMesh& root, CutResult& result) {
   std::sort(faces.begin(), faces.end());
   for (std::size_t i = 0; i + 1 < faces.size(); ++i)
     if (faces[i].piece == faces[i + 1].piece && faces[i].key == faces[i + 1].key)
-      sets.unite(faces[i].node, faces[i + 1].node);
+      sets.join(faces[i].node, faces[i + 1].node);
 
   // The parts of each piece, by their lowest root tet.
   std::vector<std::uint32_t> lowest(nodes, none);
   const auto look = [&](std::uint32_t node, std::uint32_t tet) {
-    std::uint32_t& low = lowest[sets.of(node)];
+    std::uint32_t& low = lowest[sets.representative(node)];
     low = std::min(low, tet);
   };
   for (const TetId t : all_ids<TetId>(root.tet_count()))
@@ -99,10 +81,10 @@ void separate_pieces(Pieces& pieces, const TetMesh& root, CutResult& result) {
   std::vector<Part> parts;
   for (std::uint32_t p = 0; p < before; ++p)
     for (std::size_t j = 0; first[p] != none && j < pieces.piece[p].cut.size(); ++j)
-      if (const auto node = static_cast<std::uint32_t>(first[p] + j); sets.of(node) == node)
+      if (const auto node = static_cast<std::uint32_t>(first[p] + j); sets.representative(node) == node)
         parts.push_back({p, lowest[node], node});
   for (const TetId t : all_ids<TetId>(root.tet_count()))
-    if (fresh(pieces.label[t]) && sets.of(t.value) == t.value)
+    if (fresh(pieces.label[t]) && sets.representative(t.value) == t.value)
       parts.push_back({pieces.label[t], lowest[t.value], t.value});
   std::sort(parts.begin(), parts.end());
   std::vector<std::uint32_t> number(nodes, none);
@@ -116,13 +98,13 @@ void separate_pieces(Pieces& pieces, const TetMesh& root, CutResult& result) {
   }
   if (next == before) return;
   for (const TetId t : all_ids<TetId>(root.tet_count()))
-    if (fresh(pieces.label[t])) pieces.label[t] = number[sets.of(t.value)];
+    if (fresh(pieces.label[t])) pieces.label[t] = number[sets.representative(t.value)];
   for (std::uint32_t p = 0; p < before; ++p) {
     if (first[p] == none) continue;
     std::vector<CutTet> all = std::move(pieces.piece[p].cut);
     pieces.piece[p].cut.clear();
     for (std::size_t j = 0; j < all.size(); ++j)
-      pieces.piece[number[sets.of(static_cast<std::uint32_t>(first[p] + j))]].cut.push_back(all[j]);
+      pieces.piece[number[sets.representative(static_cast<std::uint32_t>(first[p] + j))]].cut.push_back(all[j]);
   }
 }
 
@@ -154,17 +136,17 @@ std::vector<std::uint32_t> join_pieces(Pieces& pieces, std::span<const std::uint
         if (const CutTet& tet = pieces.piece[p].cut[j]; tet.face[i].is_section())
           faces.push_back({face_of(tet.corner, i), p, static_cast<std::uint32_t>(j), static_cast<std::uint8_t>(i)});
   std::sort(faces.begin(), faces.end());
-  Sets sets(pieces.piece.size());
+  DisjointSets sets(pieces.piece.size());
   std::vector<const Face*> met;
   for (std::size_t i = 0; i + 1 < faces.size(); ++i)
     if (faces[i].key == faces[i + 1].key) {
-      sets.unite(faces[i].piece, faces[i + 1].piece);
+      sets.join(faces[i].piece, faces[i + 1].piece);
       met.push_back(&faces[i]);
       met.push_back(&faces[i + 1]);
     }
   const std::uint32_t target = *std::min_element(named.begin(), named.end());
   for (const std::uint32_t p : named)
-    if (sets.of(p) != target)
+    if (sets.representative(p) != target)
       throw InvalidInput(where, "piece " + std::to_string(p) + " shares no section with the others",
                          "join pieces that a cut has parted");
 

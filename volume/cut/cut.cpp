@@ -232,9 +232,8 @@ CutResult commit(Pieces& pieces, const Groups& groups, const std::vector<Sides>&
 struct Cutter::Parts {
   const TetMesh& root;
   const Boundary& boundary;
-  std::optional<TetClusters> clusters; ///< none: every tet is looked at
-  std::optional<VertexTets> around;    ///< with the clusters
-  double diagonal;
+  std::optional<TetClusters> clusters = {}; ///< none: every tet is looked at
+  double diagonal = bounds_of(root).diagonal();
   std::vector<double> value = {}; ///< memory that is used again, as below
   std::vector<std::uint8_t> used = {}, state = {};
 
@@ -259,7 +258,7 @@ struct Cutter::Parts {
                        std::max(options.snap, smallest_snap), std::numeric_limits<double>::infinity()};
       if (level_set && level_set->linear() && options.snap <= largest_flat_snap)
         field.snap_distance = flatness * diagonal;
-      sides[g] = sides_of(pieces, root, group, field, around ? &*around : nullptr, std::move(state));
+      sides[g] = sides_of(pieces, root, group, field, clusters ? &clusters->around : nullptr, std::move(state));
       if (options.manifold) part_pinches(pieces, root, group, field, sides[g]);
       cuts[g] = subdivided(pieces, root, boundary, group, sides[g], field, VertexId(next));
       next += cuts[g].added.size();
@@ -307,8 +306,9 @@ struct Cutter::Parts {
   }
 };
 
+Cutter::Cutter(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Cutter::Cutter(const TetMesh& root, const Boundary& boundary)
-    : parts_(new Parts{root, boundary, clusters_of(root), tets_around_vertices(root), bounds_of(root).diagonal()}) {}
+    : Cutter(std::unique_ptr<Parts>(new Parts{root, boundary, clusters_of(root)})) {}
 Cutter::~Cutter() = default;
 Cutter::Cutter(Cutter&&) noexcept = default;
 
@@ -320,20 +320,18 @@ CutResult Cutter::cut_by_values(Pieces& pieces, std::span<const double> value, c
   return parts_->cut_by_values(pieces, value, level_set, options);
 }
 
-Cutter::Cutter(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+Cutter Cutter::for_one_cut(const TetMesh& root, const Boundary& boundary) {
+  return Cutter(std::unique_ptr<Parts>(new Parts{root, boundary}));
+}
 
 CutResult cut(Pieces& pieces, const TetMesh& root, const Boundary& boundary, const LevelSet& level_set,
               const CutOptions& options) {
-  const double diagonal = level_set.linear() ? bounds_of(root).diagonal() : 0;
-  return Cutter(std::unique_ptr<Cutter::Parts>(new Cutter::Parts{root, boundary, {}, {}, diagonal}))
-      .cut(pieces, level_set, options);
+  return Cutter::for_one_cut(root, boundary).cut(pieces, level_set, options);
 }
 
 CutResult cut_by_values(Pieces& pieces, const TetMesh& root, const Boundary& boundary, std::span<const double> value,
                         const LevelSet* level_set, const CutOptions& options) {
-  const double diagonal = level_set && level_set->linear() ? bounds_of(root).diagonal() : 0;
-  return Cutter(std::unique_ptr<Cutter::Parts>(new Cutter::Parts{root, boundary, {}, {}, diagonal}))
-      .cut_by_values(pieces, value, level_set, options);
+  return Cutter::for_one_cut(root, boundary).cut_by_values(pieces, value, level_set, options);
 }
 
 } // namespace pith

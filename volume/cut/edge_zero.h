@@ -35,9 +35,9 @@ private:
 };
 
 /// Where on the edge from a to b (rest space) the field is zero: a fraction in [snap, 1 − snap]. `value_a` and
-/// `value_b` have opposite signs. One linear step; then, for a level set that is not linear, up to twelve steps of
-/// inverse quadratic interpolation inside a bracket (Brent 1973, §4.2, without his safeguards but bisection), ended
-/// when the error left is below about 1e-7 of the edge: two or three values.
+/// `value_b` have opposite signs, or one is 0. One linear step; then, for a level set that is not linear, up to
+/// twelve steps of inverse quadratic interpolation inside a bracket (Brent 1973, §4.2, without his safeguards but
+/// bisection), ended when the error left is below about 1e-7 of the edge: two or three values.
 double zero_on_edge(const LevelSet* level_set, const Rigid& placement, const Vec3d& a, const Vec3d& b, double value_a,
                     double value_b, double snap);
 

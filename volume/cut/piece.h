@@ -102,6 +102,8 @@ struct PieceMeasure {
   double minimum_dihedral = 0; ///< radians, over cut tets; π where there are none
 };
 PieceMeasure measure(const Pieces& pieces, std::uint32_t piece, const TetMesh& root);
+/// Of all pieces, bit for bit the same: one pass over the root's labels.
+std::vector<PieceMeasure> measures_of(const Pieces& pieces, const TetMesh& root);
 
 /// The piece that contains a rest point (named that way in recipes); `owner` is the root tet that contains x. On a
 /// section the lowest-numbered piece. `no_piece` where `owner` does not exist or x lies in a part that was not kept.

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <string>
 
 namespace pith {
@@ -30,18 +31,8 @@ double smallest_barycentric(const Corners& p, const Vec3d& x) {
   return smallest;
 }
 
-} // namespace
-
-PieceMeasure measure(const Pieces& pieces, std::uint32_t piece, const TetMesh& root) {
-  if (piece >= pieces.piece.size())
-    throw InvalidInput("piece",
-                       "there is no piece " + std::to_string(piece) + " among " + std::to_string(pieces.piece.size()),
-                       "name one that exists");
-  std::vector<TetId> whole;
-  for (const TetId t : all_ids<TetId>(root.tet_count()))
-    if (pieces.label[t] == piece) whole.push_back(t);
-  const std::vector<CutTet>& cut = pieces.piece[piece].cut;
-
+PieceMeasure measure_of(const Pieces& pieces, const TetMesh& root, std::span<const TetId> whole,
+                        std::span<const CutTet> cut) {
   PieceMeasure result;
   result.whole_tets = whole.size();
   result.cut_tets = cut.size();
@@ -70,6 +61,30 @@ PieceMeasure measure(const Pieces& pieces, std::uint32_t piece, const TetMesh& r
                [&](std::size_t i) { dihedral[i] = smallest_dihedral(corners_of(whole.size() + i)); });
   result.minimum_dihedral = std::numbers::pi;
   for (const double angle : dihedral) result.minimum_dihedral = std::min(result.minimum_dihedral, angle);
+  return result;
+}
+
+} // namespace
+
+PieceMeasure measure(const Pieces& pieces, std::uint32_t piece, const TetMesh& root) {
+  if (piece >= pieces.piece.size())
+    throw InvalidInput("piece",
+                       "there is no piece " + std::to_string(piece) + " among " + std::to_string(pieces.piece.size()),
+                       "name one that exists");
+  std::vector<TetId> whole;
+  for (const TetId t : all_ids<TetId>(root.tet_count()))
+    if (pieces.label[t] == piece) whole.push_back(t);
+  return measure_of(pieces, root, whole, pieces.piece[piece].cut);
+}
+
+std::vector<PieceMeasure> measures_of(const Pieces& pieces, const TetMesh& root) {
+  std::vector<std::vector<TetId>> whole(pieces.piece.size());
+  for (const TetId t : all_ids<TetId>(root.tet_count()))
+    if (pieces.label[t] != Pieces::was_cut) whole[pieces.label[t]].push_back(t);
+  std::vector<PieceMeasure> result;
+  result.reserve(whole.size());
+  for (std::size_t p = 0; p < whole.size(); ++p)
+    result.push_back(measure_of(pieces, root, whole[p], pieces.piece[p].cut));
   return result;
 }
 

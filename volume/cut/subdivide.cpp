@@ -8,7 +8,6 @@
 #include "volume/mesh/orientation.h"
 
 #include <algorithm>
-#include <atomic>
 
 namespace pith {
 namespace {
@@ -90,200 +89,252 @@ Tags with_section(Tags tags, std::uint8_t faces, CutId cut) {
 /// round to round farther, until every tet is positive.
 constexpr std::array<double, 3> pulled_to = {0.1, 0.3, 0.5};
 
+/// One group of pieces while it is being cut, step by step.
+class Subdivision {
+public:
+  Subdivision(const Pieces& pieces, const TetMesh& root, const Boundary& boundary, const PieceGroup& group,
+              const Sides& sides, const GroupField& field, VertexId first_added)
+      : pieces_(pieces), root_(root), boundary_(boundary), group_(group), sides_(sides), field_(field),
+        first_added_(first_added), cut_(pieces.cut_count), crossed_(sides.crossed) {}
+
+  GroupCut run() {
+    number_pieces();
+    if (result_.piece.empty()) return {};
+    section_ = section_tets(pieces_, root_, boundary_, sides_);
+    result_.tets_cut = crossed_.size();
+    const EdgeNumbers edges = numbered_edges();
+    place_vertices(edges);
+    take_whole_cut_tets();
+    split_crossed();
+    pull_until_positive();
+    find_directions();
+    open_root_tets();
+    return std::move(result_);
+  }
+
+private:
+  const Corners& corner_of(std::size_t i) const { return crossed_[i].corner(pieces_, root_); }
+  const Pattern& pattern_of(std::size_t i) const { return patterns[sides_.pattern_code(corner_of(i))]; }
+  static const SplitEdges& edges_of(const Pattern& pattern) { return split_edges[static_cast<int>(pattern.split)]; }
+
+  void number_pieces() {
+    row_of_piece_.assign(pieces_.piece.size(), 0);
+    for (const std::uint32_t p : group_.piece)
+      if (sides_.seen[p] == side_crossed) {
+        row_of_piece_[p] = static_cast<std::uint32_t>(result_.piece.size());
+        result_.piece.push_back(p);
+      }
+    result_.below.resize(result_.piece.size());
+    result_.above.resize(result_.piece.size());
+  }
+
+  /// The edges that change sign, in the order of the tets; fills made_, and the older vertices on the section.
+  EdgeNumbers numbered_edges() {
+    std::size_t most = 0;
+    for (std::size_t i = 0; i < crossed_.size(); ++i) most += edges_of(pattern_of(i)).count;
+    EdgeNumbers edges(most);
+    made_.resize(crossed_.size());
+    std::vector<VertexId>& old = vertices_.old;
+    for (std::size_t i = 0; i < crossed_.size(); ++i) {
+      const Corners& corner = corner_of(i);
+      const Pattern& pattern = pattern_of(i);
+      const SplitEdges& split = edges_of(pattern);
+      for (int e = 0; e < split.count; ++e)
+        made_[i][e] = VertexId(first_added_ + edges.number(corner[pattern.corner[split.corner[e][0]]],
+                                                           corner[pattern.corner[split.corner[e][1]]]));
+      for (int k = 0; k < pattern.on; ++k) old.push_back(corner[pattern.corner[k]]);
+    }
+    for (const SectionTet& tet : section_) {
+      const Corners& corner = tet.tet.corner(pieces_, root_);
+      for (int i = 0; i < 4; ++i)
+        if (tet.faces >> i & 1)
+          for (const int c : facet_corners[i]) old.push_back(corner[c]);
+    }
+    std::sort(old.begin(), old.end());
+    old.erase(std::unique(old.begin(), old.end()), old.end());
+    return edges;
+  }
+
+  void place_vertices(const EdgeNumbers& edges) {
+    const std::size_t count = edges.count();
+    vertices_.added.resize(count);
+    vertices_.position.resize(count);
+    fraction_.resize(count);
+    parallel_for(count, edges_per_block(field_), [&](std::size_t i) {
+      const VertexId a = edges.low(i), b = edges.high(i);
+      const double at_a = field_.value[a], at_b = field_.value[b];
+      vertices_.added[i] = {a, b, cut_};
+      fraction_[i] = zero_on_edge(field_.level_set, group_.placement, pieces_.position(root_, a),
+                                  pieces_.position(root_, b), at_a, at_b, field_.distance_kept(at_a, at_b));
+      place(i);
+    });
+  }
+  void place(std::size_t i) {
+    const Vec3d &from = pieces_.position(root_, vertices_.added[i].a),
+                &to = pieces_.position(root_, vertices_.added[i].b);
+    vertices_.position[i] = from + fraction_[i] * (to - from);
+  }
+
+  /// Cut tets that stay whole go to their side in order; behind them is room for what the crossed tets become.
+  void take_whole_cut_tets() {
+    std::vector<std::array<std::size_t, 2>> parts(result_.piece.size(), {0, 0}); // of crossed tets, so far
+    offset_.resize(crossed_.size());
+    for (std::size_t i = 0; i < crossed_.size(); ++i) {
+      const auto tets = tets_made(pattern_of(i));
+      for (int s = 0; s < 2; ++s) {
+        std::size_t& so_far = parts[row_of_piece_[crossed_[i].piece]][s];
+        offset_[i][s] = so_far;
+        so_far += tets[s];
+      }
+    }
+    first_part_.resize(result_.piece.size());
+    auto next_section = section_.begin();
+    for (std::size_t g = 0; g < group_.piece.size(); ++g) {
+      const std::uint32_t p = group_.piece[g];
+      if (sides_.seen[p] != side_crossed) continue;
+      const std::vector<CutTet>& old = pieces_.piece[p].cut;
+      const std::uint32_t row = row_of_piece_[p];
+      const std::array<std::vector<CutTet>*, 2> half = {&result_.below[row], &result_.above[row]};
+      std::array<std::size_t, 2>& kept = first_part_[row] = {0, 0};
+      for (const std::uint8_t side : sides_.cut[g])
+        if (side != side_crossed) ++kept[side == side_above];
+      for (int s = 0; s < 2; ++s) half[s]->reserve(kept[s] + parts[row][s]);
+      for (std::size_t j = 0; j < old.size(); ++j) {
+        const std::uint8_t side = sides_.cut[g][j];
+        if (side == side_crossed) continue;
+        CutTet& tet = half[side == side_above]->emplace_back(old[j]);
+        if (next_section != section_.end() && !next_section->tet.whole && next_section->tet.piece == p &&
+            next_section->tet.index == j) {
+          tet.face = with_section(tet.face, next_section->faces, cut_);
+          ++next_section;
+        }
+      }
+      for (int s = 0; s < 2; ++s) half[s]->resize(kept[s] + parts[row][s]);
+    }
+  }
+
+  std::array<VertexId, 8> points_of(std::size_t i, const Pattern& pattern) const {
+    const Corners& corner = corner_of(i);
+    std::array<VertexId, 8> id;
+    for (int k = 0; k < 4; ++k) {
+      id[k] = corner[pattern.corner[k]];
+      id[4 + k] = made_[i][k];
+    }
+    return id;
+  }
+  bool positive(const std::array<VertexId, 8>& id, const LocalTet& local) const {
+    const auto at = [&](int k) -> const Vec3d& {
+      return local[k] < 4 ? pieces_.position(root_, id[local[k]]) : vertices_.position[id[local[k]] - first_added_];
+    };
+    return orientation(at(0), at(1), at(2), at(3)) > 0;
+  }
+
+  /// What the crossed tets become, with the tags of their faces.
+  void split_crossed() {
+    flat_.assign(crossed_.size(), 0);
+    parallel_for(crossed_.size(), tets_per_block, [&](std::size_t i) {
+      const TetReference& tet = crossed_[i];
+      const Pattern& pattern = pattern_of(i);
+      const Tags tags = tags_of(tet, pieces_, boundary_);
+      const TetId in = tet.whole ? TetId(tet.index) : pieces_.piece[tet.piece].cut[tet.index].root;
+      const auto mask = point_masks(pattern);
+      const std::array<VertexId, 8> id = points_of(i, pattern);
+      const std::uint32_t row = row_of_piece_[tet.piece];
+      std::array<CutTet*, 2> out = {result_.below[row].data() + first_part_[row][0] + offset_[i][0],
+                                    result_.above[row].data() + first_part_[row][1] + offset_[i][1]};
+      split_tet(pattern, id, [&](bool above, const LocalTet& local) {
+        CutTet& part = *out[above]++;
+        flat_[i] |= !positive(id, local);
+        part.root = in;
+        for (int k = 0; k < 4; ++k) {
+          part.corner[k] = id[local[k]];
+          const auto& c = facet_corners[k];
+          const int on = mask[local[c[0]]] & mask[local[c[1]]] & mask[local[c[2]]];
+          part.face[k] = FaceTag::interior();
+          if (on & 15) {
+            int face = 0;
+            while (!(on >> face & 1)) ++face;
+            part.face[k] = tags[pattern.corner[face]];
+          } else if (on & on_section) {
+            part.face[k] = FaceTag::section(cut_);
+          }
+        }
+      });
+    });
+  }
+
+  void pull_until_positive() {
+    const auto any_flat = [&] {
+      return std::any_of(flat_.begin(), flat_.end(), [](std::uint8_t flat) { return flat; });
+    };
+    for (std::size_t round = 0; any_flat(); ++round) {
+      if (round == pulled_to.size())
+        throw SolverFailure("cut: it passes through tets that are too thin for the precision of numbers; cut with a "
+                            "larger snap, here and in the cuts before");
+      for (std::size_t i = 0; i < crossed_.size(); ++i)
+        for (int e = 0; flat_[i] && e < edges_of(pattern_of(i)).count; ++e) {
+          const std::size_t row = made_[i][e] - first_added_;
+          fraction_[row] = std::clamp(fraction_[row], pulled_to[round], 1 - pulled_to[round]);
+          place(row);
+        }
+      parallel_for(crossed_.size(), tets_per_block, [&](std::size_t i) {
+        const Pattern& pattern = pattern_of(i);
+        const std::array<VertexId, 8> id = points_of(i, pattern);
+        flat_[i] = 0;
+        split_tet(pattern, id, [&](bool, const LocalTet& local) { flat_[i] |= !positive(id, local); });
+      });
+    }
+  }
+
+  void find_directions() {
+    SectionDirections directions =
+        section_directions(pieces_, root_, group_, sides_, field_, vertices_, made_, section_, first_added_);
+    for (std::size_t i = 0; i < vertices_.old.size(); ++i)
+      result_.on_section.push_back({vertices_.old[i], cut_, directions.old[i]});
+    result_.added = std::move(vertices_.added);
+    result_.added_position = std::move(vertices_.position);
+    result_.added_normal = std::move(directions.added);
+  }
+
+  /// Root tets that no piece keeps whole any more: crossed ones, and those that must carry a section face.
+  void open_root_tets() {
+    for (const TetReference& tet : crossed_)
+      if (tet.whole) result_.opened.push_back(TetId(tet.index));
+    for (const SectionTet& tet : section_) {
+      if (!tet.tet.whole) continue;
+      const std::uint32_t row = row_of_piece_[tet.tet.piece];
+      const TetId t(tet.tet.index);
+      (tet.above ? result_.above : result_.below)[row].push_back(
+          {root_.corner[t], t, with_section(tags_of(tet.tet, pieces_, boundary_), tet.faces, cut_)});
+      result_.opened.push_back(t);
+    }
+  }
+
+  const Pieces& pieces_;
+  const TetMesh& root_;
+  const Boundary& boundary_;
+  const PieceGroup& group_;
+  const Sides& sides_;
+  const GroupField& field_;
+  const VertexId first_added_;
+  const CutId cut_;
+  const std::vector<TetReference>& crossed_;
+  std::vector<std::uint32_t> row_of_piece_; ///< of result_.piece
+  std::vector<SectionTet> section_;
+  std::vector<std::array<VertexId, 4>> made_; ///< the new vertices of each crossed tet
+  SectionVertices vertices_;
+  std::vector<double> fraction_;                       ///< of its edge, of each new vertex
+  std::vector<std::array<std::size_t, 2>> offset_;     ///< of each crossed tet's parts, behind first_part_
+  std::vector<std::array<std::size_t, 2>> first_part_; ///< by row of result_.piece: below, above
+  std::vector<std::uint8_t> flat_;                     ///< crossed tets of which a part has no volume
+  GroupCut result_;
+};
+
 } // namespace
 
 GroupCut subdivided(const Pieces& pieces, const TetMesh& root, const Boundary& boundary, const PieceGroup& group,
                     const Sides& sides, const GroupField& field, VertexId first_added) {
-  const CutId cut(pieces.cut_count);
-  GroupCut result;
-  std::vector<std::uint32_t> row_of_piece(pieces.piece.size(), 0);
-  for (const std::uint32_t p : group.piece)
-    if (sides.seen[p] == side_crossed) {
-      row_of_piece[p] = static_cast<std::uint32_t>(result.piece.size());
-      result.piece.push_back(p);
-    }
-  if (result.piece.empty()) return result;
-  const std::vector<TetReference>& crossed = sides.crossed;
-  const std::vector<SectionTet> section = section_tets(pieces, root, boundary, sides);
-  result.tets_cut = crossed.size();
-
-  // Number the edges that change sign, in the order of the tets.
-  std::vector<std::array<VertexId, 4>> made(crossed.size());
-  std::size_t most = 0;
-  const auto pattern_of = [&](const Corners& corner) -> const Pattern& {
-    return patterns[sides.pattern_code(corner)];
-  };
-  const auto edges_of = [](const Pattern& p) -> const SplitEdges& { return split_edges[static_cast<int>(p.split)]; };
-  for (const TetReference& tet : crossed) most += edges_of(pattern_of(tet.corner(pieces, root))).count;
-  EdgeNumbers edges(most);
-  std::vector<VertexId> old_on; // older vertices on the section
-  for (std::size_t i = 0; i < crossed.size(); ++i) {
-    const Corners& corner = crossed[i].corner(pieces, root);
-    const Pattern& pattern = pattern_of(corner);
-    const SplitEdges& split = edges_of(pattern);
-    for (int e = 0; e < split.count; ++e)
-      made[i][e] = VertexId(first_added + edges.number(corner[pattern.corner[split.corner[e][0]]],
-                                                       corner[pattern.corner[split.corner[e][1]]]));
-    for (int k = 0; k < pattern.on; ++k) old_on.push_back(corner[pattern.corner[k]]);
-  }
-  for (const SectionTet& tet : section) {
-    const Corners& corner = tet.tet.corner(pieces, root);
-    for (int i = 0; i < 4; ++i)
-      if (tet.faces >> i & 1)
-        for (const int c : facet_corners[i]) old_on.push_back(corner[c]);
-  }
-  std::sort(old_on.begin(), old_on.end());
-  old_on.erase(std::unique(old_on.begin(), old_on.end()), old_on.end());
-
-  // Place the new vertices.
-  const std::size_t count = edges.count();
-  SectionVertices vertices{std::vector<AddedVertex>(count), std::vector<Vec3d>(count), std::move(old_on)};
-  std::vector<double> fraction(count);
-  const auto place = [&](std::size_t i) {
-    const Vec3d &from = pieces.position(root, edges.low(i)), &to = pieces.position(root, edges.high(i));
-    vertices.position[i] = from + fraction[i] * (to - from);
-  };
-  parallel_for(count, edges_per_block(field), [&](std::size_t i) {
-    const VertexId a = edges.low(i), b = edges.high(i);
-    vertices.added[i] = {a, b, cut};
-    fraction[i] = zero_on_edge(field.level_set, group.placement, pieces.position(root, a), pieces.position(root, b),
-                               field.value[a], field.value[b], field.distance_kept(field.value[a], field.value[b]));
-    place(i);
-  });
-
-  const auto corners_of = [&](std::size_t i, const Pattern& pattern) {
-    const Corners& corner = crossed[i].corner(pieces, root);
-    std::array<VertexId, 8> id;
-    for (int k = 0; k < 4; ++k) {
-      id[k] = corner[pattern.corner[k]];
-      id[4 + k] = made[i][k];
-    }
-    return id;
-  };
-  // Cut tets that stay whole go to their side in order; then what the crossed ones become; then root tets that must
-  // carry a section face.
-  result.below.resize(result.piece.size());
-  result.above.resize(result.piece.size());
-  std::vector<std::array<std::size_t, 2>> parts(result.piece.size(), {0, 0}); // of crossed tets
-  for (const TetReference& tet : crossed) {
-    const auto tets = tets_made(pattern_of(tet.corner(pieces, root)));
-    for (int s = 0; s < 2; ++s) parts[row_of_piece[tet.piece]][s] += tets[s];
-  }
-  auto next_section = section.begin();
-  for (std::size_t g = 0; g < group.piece.size(); ++g) {
-    const std::uint32_t p = group.piece[g];
-    if (sides.seen[p] != side_crossed) continue;
-    const std::vector<CutTet>& old = pieces.piece[p].cut;
-    std::vector<CutTet>&below = result.below[row_of_piece[p]], &above = result.above[row_of_piece[p]];
-    std::array<std::size_t, 2> kept = {0, 0};
-    for (const std::uint8_t side : sides.cut[g])
-      if (side != side_crossed) ++kept[side == side_above];
-    below.reserve(kept[0] + parts[row_of_piece[p]][0]);
-    above.reserve(kept[1] + parts[row_of_piece[p]][1]);
-    for (std::size_t j = 0; j < old.size(); ++j) {
-      const std::uint8_t side = sides.cut[g][j];
-      if (side == side_crossed) continue;
-      std::vector<CutTet>& half = side == side_above ? above : below;
-      half.push_back(old[j]);
-      if (next_section != section.end() && !next_section->tet.whole && next_section->tet.piece == p &&
-          next_section->tet.index == j) {
-        half.back().face = with_section(half.back().face, next_section->faces, cut);
-        ++next_section;
-      }
-    }
-  }
-  std::vector<std::array<std::uint32_t, 2>> offset(crossed.size());
-  std::vector<std::array<std::size_t, 2>> size(result.piece.size());
-  for (std::size_t r = 0; r < size.size(); ++r) size[r] = {result.below[r].size(), result.above[r].size()};
-  for (std::size_t i = 0; i < crossed.size(); ++i) {
-    const auto tets = tets_made(pattern_of(crossed[i].corner(pieces, root)));
-    for (int s = 0; s < 2; ++s) {
-      offset[i][s] = static_cast<std::uint32_t>(size[row_of_piece[crossed[i].piece]][s]);
-      size[row_of_piece[crossed[i].piece]][s] += tets[s];
-    }
-  }
-  for (std::size_t r = 0; r < size.size(); ++r) {
-    result.below[r].resize(size[r][0]);
-    result.above[r].resize(size[r][1]);
-  }
-  std::vector<std::uint8_t> flat(crossed.size(), 0); // crossed tets of which rounding left a part without volume
-  std::atomic<bool> any_flat = false;
-  const auto positive = [&](const std::array<VertexId, 8>& id, const LocalTet& local) {
-    const auto at = [&](int k) -> const Vec3d& {
-      return local[k] < 4 ? pieces.position(root, id[local[k]]) : vertices.position[id[local[k]] - first_added];
-    };
-    return orientation(at(0), at(1), at(2), at(3)) > 0;
-  };
-  parallel_for(crossed.size(), tets_per_block, [&](std::size_t i) {
-    const TetReference& tet = crossed[i];
-    const Corners& corner = tet.corner(pieces, root);
-    const Pattern& pattern = pattern_of(corner);
-    const Tags tags = tags_of(tet, pieces, boundary);
-    const TetId in = tet.whole ? TetId(tet.index) : pieces.piece[tet.piece].cut[tet.index].root;
-    const auto mask = point_masks(pattern);
-    const std::array<VertexId, 8> id = corners_of(i, pattern);
-    const std::uint32_t row = row_of_piece[tet.piece];
-    std::array<CutTet*, 2> out = {result.below[row].data() + offset[i][0], result.above[row].data() + offset[i][1]};
-    split_tet(pattern, id, [&](bool above, const LocalTet& local) {
-      CutTet& part = *out[above]++;
-      flat[i] |= !positive(id, local);
-      part.root = in;
-      for (int k = 0; k < 4; ++k) {
-        part.corner[k] = id[local[k]];
-        const auto& c = facet_corners[k];
-        const int on = mask[local[c[0]]] & mask[local[c[1]]] & mask[local[c[2]]];
-        part.face[k] = FaceTag::interior();
-        if (on & 15) {
-          int face = 0;
-          while (!(on >> face & 1)) ++face;
-          part.face[k] = tags[pattern.corner[face]];
-        } else if (on & on_section) {
-          part.face[k] = FaceTag::section(cut);
-        }
-      }
-    });
-    if (flat[i]) any_flat = true;
-  });
-
-  for (std::size_t round = 0; any_flat; ++round) {
-    if (round == pulled_to.size())
-      throw SolverFailure("cut: it passes through tets that are too thin for the precision of numbers; cut with a "
-                          "larger snap, here and in the cuts before");
-    for (std::size_t i = 0; i < crossed.size(); ++i)
-      for (int e = 0; flat[i] && e < edges_of(pattern_of(crossed[i].corner(pieces, root))).count; ++e) {
-        const std::size_t row = made[i][e] - first_added;
-        fraction[row] = std::clamp(fraction[row], pulled_to[round], 1 - pulled_to[round]);
-        place(row);
-      }
-    any_flat = false;
-    parallel_for(crossed.size(), tets_per_block, [&](std::size_t i) {
-      const Pattern& pattern = pattern_of(crossed[i].corner(pieces, root));
-      const std::array<VertexId, 8> id = corners_of(i, pattern);
-      flat[i] = 0;
-      split_tet(pattern, id, [&](bool, const LocalTet& local) { flat[i] |= !positive(id, local); });
-      if (flat[i]) any_flat = true;
-    });
-  }
-
-  SectionDirections directions =
-      section_directions(pieces, root, group, sides, field, vertices, made, section, first_added);
-  for (std::size_t i = 0; i < vertices.old.size(); ++i)
-    result.on_section.push_back({vertices.old[i], cut, directions.old[i]});
-  result.added = std::move(vertices.added);
-  result.added_position = std::move(vertices.position);
-  result.added_normal = std::move(directions.added);
-
-  for (const TetReference& tet : crossed)
-    if (tet.whole) result.opened.push_back(TetId(tet.index));
-  for (const SectionTet& tet : section) {
-    if (!tet.tet.whole) continue;
-    const std::uint32_t row = row_of_piece[tet.tet.piece];
-    const TetId t(tet.tet.index);
-    (tet.above ? result.above : result.below)[row].push_back(
-        {root.corner[t], t, with_section(tags_of(tet.tet, pieces, boundary), tet.faces, cut)});
-    result.opened.push_back(t);
-  }
-  return result;
+  return Subdivision(pieces, root, boundary, group, sides, field, first_added).run();
 }
 
 } // namespace pith

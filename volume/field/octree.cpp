@@ -5,6 +5,8 @@
 // directly. Grading: where a box has grandchildren, its 26 neighbours are divided too.
 #include "volume/field/octree.h"
 
+#include "volume/base/morton.h"
+
 #include <algorithm>
 #include <numeric>
 #include <unordered_map>
@@ -15,23 +17,8 @@ namespace {
 constexpr int finest = 20;
 constexpr std::size_t lane_slots = 8;
 
-/// Bits of x at every third place.
-std::uint64_t spread_bits(std::uint64_t x) {
-  x &= 0x1fffff;
-  x = (x | x << 32) & 0x1f00000000ffff;
-  x = (x | x << 16) & 0x1f0000ff0000ff;
-  x = (x | x << 8) & 0x100f00f00f00f00f;
-  x = (x | x << 4) & 0x10c30c30c30c30c3;
-  x = (x | x << 2) & 0x1249249249249249;
-  return x;
-}
-
-std::uint64_t code_of(const std::array<std::int32_t, 3>& at) {
-  return spread_bits(at[0]) | spread_bits(at[1]) << 1 | spread_bits(at[2]) << 2;
-}
-
 std::uint64_t place_key(int level, const std::array<std::int32_t, 3>& at) {
-  return (std::uint64_t(1) << (3 * level)) | code_of(at);
+  return (std::uint64_t(1) << (3 * level)) | morton_code(at);
 }
 
 std::int32_t cell_of(double from_low, double width, std::int32_t cells) {
@@ -51,7 +38,7 @@ Octree::Octree(std::span<const Vec3d> points, const OctreeOptions& options) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     std::array<std::int32_t, 3> at;
     for (int a = 0; a < 3; ++a) at[a] = cell_of(points[i][a] - low_[a], 2 * half_[finest], 1 << finest);
-    unordered[i] = code_of(at);
+    unordered[i] = morton_code(at);
   }
   order_.resize(points.size());
   std::iota(order_.begin(), order_.end(), 0u);
@@ -80,7 +67,7 @@ void Octree::divide(std::uint32_t parent, std::span<const std::uint64_t> code) {
   for (std::uint32_t k = 0; k < 8; ++k) {
     OctreeBox box{.at = {}, .level = above.level + 1, .parent = parent, .begin = begin};
     for (int a = 0; a < 3; ++a) box.at[a] = 2 * above.at[a] + static_cast<std::int32_t>(k >> a & 1);
-    const std::uint64_t last = (code_of(box.at) + 1) << shift; // codes of the box's points lie below
+    const std::uint64_t last = (morton_code(box.at) + 1) << shift; // codes of the box's points lie below
     box.end = static_cast<std::uint32_t>(std::lower_bound(code.begin() + begin, code.begin() + above.end, last) -
                                          code.begin());
     begin = box.end;

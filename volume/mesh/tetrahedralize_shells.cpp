@@ -34,18 +34,6 @@ std::vector<EdgeSide> edge_sides(const TriMesh& mesh) {
   return sides;
 }
 
-DisjointSets::DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-
-std::uint32_t DisjointSets::representative(std::uint32_t i) {
-  while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-  return i;
-}
-
-void DisjointSets::join(std::uint32_t a, std::uint32_t b) {
-  a = representative(a), b = representative(b);
-  parent_[std::max(a, b)] = std::min(a, b);
-}
-
 PerVertex<char> torn_vertices(const TriMesh& mesh, const std::vector<EdgeSide>& sides) {
   DisjointSets fans(3 * mesh.triangle_count()); // of corners, joined through the edges at their vertex
   const auto corner_at = [](const EdgeSide& side, bool low) {

@@ -1,5 +1,6 @@
 #pragma once
 // Inside volume/mesh: the edges and shells of a surface, and which shell lies in which.
+#include "volume/base/disjoint_sets.h"
 #include "volume/mesh/tri_mesh.h"
 
 #include <optional>
@@ -26,17 +27,6 @@ void for_each_edge(const std::vector<EdgeSide>& sides, const Body& body) {
     at = end;
   }
 }
-
-/// Disjoint sets of 0 .. count − 1; the smallest member stands for its set.
-class DisjointSets {
-public:
-  explicit DisjointSets(std::size_t count);
-  std::uint32_t representative(std::uint32_t i);
-  void join(std::uint32_t a, std::uint32_t b);
-
-private:
-  std::vector<std::uint32_t> parent_;
-};
 
 /// Which vertices are held together by nothing but themselves: their triangles form more than one fan.
 PerVertex<char> torn_vertices(const TriMesh& mesh, const std::vector<EdgeSide>& sides);
