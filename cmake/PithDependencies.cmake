@@ -31,3 +31,10 @@ block(SCOPE_FOR VARIABLES)
 endblock()
 add_library(pith_io_libraries INTERFACE)
 target_link_libraries(pith_io_libraries INTERFACE nlohmann_json::nlohmann_json PkgConfig::libzip ${CMAKE_DL_LIBS})
+
+# What the window is made of.
+find_package(glfw3 REQUIRED)
+pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
+pkg_check_modules(imgui REQUIRED IMPORTED_TARGET imgui)
+add_library(pith_window_libraries INTERFACE)
+target_link_libraries(pith_window_libraries INTERFACE PkgConfig::imgui glfw PkgConfig::epoxy fmt::fmt)
