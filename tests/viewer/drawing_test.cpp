@@ -64,14 +64,20 @@ Difference difference(const Root& root, const Pieces& pieces, const View& view, 
   return result;
 }
 
+/// Schuster 2020: two noisy patches that win by height, mixed by histogram.
+Model patches_by_height() {
+  return testing::two_patches({.select = Blend::Select::max, .grace = 0.3f, .mix = Blend::Mix::histogram},
+                              testing::skewed_noise(1), testing::skewed_noise(2));
+}
+
 class DrawnMethods : public ::testing::TestWithParam<int> {};
 
 TEST_P(DrawnMethods, PixelsAreMaterialAt) {
   const std::array<Model (*)(), 5> make = {[] { return testing::masked_volumes(); },
                                            [] { return testing::masked_images(); },
                                            [] { return testing::periodic_tile(0.3f); },
-                                           [] { return testing::texture_atlas(); },
-                                           [] { return testing::height_selection(Blend::Mix::histogram); }};
+                                           [] { return testing::gutter_atlas(); },
+                                           [] { return patches_by_height(); }};
   const Root root(make[GetParam()]());
   Pieces pieces = whole_piece(root.model().mesh);
   const auto plane = level_set_of(PlaneCut{.normal = {0.3, 0.2, 1}, .offset = 1.2});
@@ -87,7 +93,10 @@ INSTANTIATE_TEST_SUITE_P(All, DrawnMethods, ::testing::Range(0, 5));
 TEST(Drawing, KiwiAcrossIsMaterialAt) {
   const std::filesystem::path source = PITH_SOURCE_DIR;
   Recipe recipe = read_recipe(source / "data/recipes/table1/kiwi.json");
-  recipe.cuts = {{.shape = PlaneCut{.normal = {0, 0, 1}, .offset = 0.5}, .keep = Keep::left}};
+  CutStep across;
+  across.shape = PlaneCut{.normal = {0, 0, 1}, .offset = 0.5};
+  across.keep = Keep::left;
+  recipe.cuts = {across};
   recipe.moves.clear();
   Builder builder;
   BuildResult built = builder.build(recipe, source / "data/recipes/table1");
@@ -95,7 +104,7 @@ TEST(Drawing, KiwiAcrossIsMaterialAt) {
   const Box box = bounds_of(root.model().mesh);
   const Difference d = difference(
       root, built.pieces,
-      {.eye = box.center() + Vec3d(0.5, 0.4, 1.4) * box.diagonal(), .target = box.center(), .vertical_angle = 0.6}, 240);
+      {.eye = box.center() + Vec3d(1.0, 0.9, 0.75) * box.diagonal(), .target = box.center(), .vertical_angle = 0.6}, 240);
   EXPECT_GT(d.section, 500u);
   EXPECT_GT(d.skin, 100u);
   EXPECT_EQ(d.beyond, 0u) << d.worst << " of 255 at worst, " << d.pixels << " pixels";
