@@ -94,6 +94,7 @@ Verb render_verb(CLI::App& program);
 Verb export_verb(CLI::App& program);
 Verb exemplar_verb(CLI::App& program);
 Verb shape_verb(CLI::App& program);
+Verb view_verb(CLI::App& program);
 
 /// Errors early, before long work: IoFailure when the folder of an output file does not exist or is not writable;
 /// InvalidInput when its extension is none of `extensions` (empty: any).

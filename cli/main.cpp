@@ -155,7 +155,8 @@ int main(int argc, char** argv) {
 
   std::vector<Verb> verbs;
   for (const auto& verb :
-       {make_verb, info_verb, check_verb, cut_verb, sample_verb, render_verb, export_verb, exemplar_verb, shape_verb})
+       {make_verb, info_verb, check_verb, cut_verb, sample_verb, render_verb, export_verb, exemplar_verb, shape_verb,
+        view_verb})
     verbs.push_back(verb(program));
   refuse_odd_values(program);
   for (const Verb& verb : verbs) refuse_odd_values(*verb.app);

@@ -26,7 +26,7 @@ if(cli_sources)
   add_executable(pith ${cli_sources})
   target_include_directories(pith PRIVATE ${PROJECT_SOURCE_DIR})
   target_compile_definitions(pith PRIVATE PITH_VERSION="${PROJECT_VERSION}")
-  target_link_libraries(pith PRIVATE pith::recipe pith::raytrace CLI11::CLI11 fmt::fmt nlohmann_json::nlohmann_json
+  target_link_libraries(pith PRIVATE pith::recipe pith::raytrace pith::viewer CLI11::CLI11 fmt::fmt nlohmann_json::nlohmann_json
     pith_options)
   add_dependencies(pith pith-tetgen pith-images pith-vdb)
 endif()

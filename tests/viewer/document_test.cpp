@@ -33,7 +33,11 @@ std::string bytes_of(const DocumentState& state, const fs::path& folder) {
 class Documents : public ::testing::Test {
 protected:
   testing::ScratchFolder scratch;
-  DocumentOptions options{.build = {.cache = scratch.path() / "cache"}, .recovery = scratch.path() / "recovery"};
+  DocumentOptions options;
+  void SetUp() override {
+    options.build.cache = scratch.path() / "cache";
+    options.recovery = scratch.path() / "recovery";
+  }
 };
 
 TEST_F(Documents, UndoAllRedoAllIsTheModelOfABuild) {

@@ -1,0 +1,70 @@
+#include "viewer/screen.h"
+
+#include "viewer/offscreen.h"
+#include "volume/base/error.h"
+#include "volume/io/image_io.h"
+
+namespace pith {
+
+DrawOptions Screen::follow(int width, int height) {
+  bench_.aspect = static_cast<double>(width) / height;
+  if (material_ != bench_.material_version()) {
+    material_ = bench_.material_version();
+    drawing_.set_material(bench_.root() ? material_tables(*bench_.root()) : MaterialTables{});
+  }
+  const DrawnSurface& surface = bench_.surface();
+  if (surface_ != bench_.surface_version()) {
+    surface_ = bench_.surface_version();
+    drawing_.set_surface(surface);
+  }
+  for (const DrawnPiece& piece : surface.piece) drawing_.set_placement(piece.piece, piece.placement);
+  DrawOptions options;
+  options.lit = bench_.settings().lit;
+  options.filtered = bench_.settings().filtered;
+  return options;
+}
+
+void Screen::draw(int width, int height) {
+  const DrawOptions options = follow(width, height);
+  drawing_.draw(bench_.view(), width, height, options);
+}
+
+Image Screen::picture(int width, int height) {
+  DrawOptions options = follow(width, height);
+  options.transparent = true;
+  return drawing_.picture(bench_.view(), width, height, options);
+}
+
+void write_picture(const std::filesystem::path& path, const Image& image) {
+  write_image(path, image, {.linear = true});
+}
+
+void replay(const EventList& session, const std::string& file, const std::filesystem::path& folder,
+            const ReplayOptions& options, const std::function<void(Workbench&, Screen&)>& done) {
+  const std::array<int, 2> size = options.size[0] > 0 ? options.size : session.size;
+  const OffscreenContext context;
+  Workbench bench(options.document, static_cast<double>(size[0]) / size[1]);
+  Screen screen(bench);
+  const auto require_well = [&](const std::string& where) {
+    if (bench.message_is_error() && !bench.message().empty())
+      throw InvalidInput(where, bench.message(), "mend the session, or open what it was recorded on");
+  };
+  if (!options.open.empty()) {
+    bench.handle({.kind = Event::Kind::command, .name = "open", .text = options.open.string()});
+    require_well(file);
+    bench.handle({.kind = Event::Kind::wait});
+    require_well(file);
+  }
+  for (std::size_t i = 0; i < session.event.size() && !bench.quit; ++i) {
+    Event event = session.event[i];
+    if (event.kind == Event::Kind::command && (event.name == "open" || event.name == "save as"))
+      event.text = (folder / event.text).string(); // an absolute path stays
+    if (event.kind == Event::Kind::picture) write_picture(folder / event.text, screen.picture(size[0], size[1]));
+    bench.handle(event);
+    require_well(file + ": /events/" + std::to_string(i));
+  }
+  if (!options.picture.empty()) write_picture(options.picture, screen.picture(size[0], size[1]));
+  if (done) done(bench, screen);
+}
+
+} // namespace pith

@@ -1,0 +1,42 @@
+#pragma once
+// A workbench drawn with GL: hands over what has changed, and draws.
+#include "viewer/drawing.h"
+#include "viewer/workbench.h"
+
+namespace pith {
+
+class Screen {
+public:
+  explicit Screen(Workbench& bench) : bench_(bench) {}
+
+  /// Into the current framebuffer.
+  void draw(int width, int height);
+  /// A picture, transparent where nothing is; as Drawing::picture.
+  Image picture(int width, int height);
+  std::string driver() const { return drawing_.driver(); }
+
+private:
+  DrawOptions follow(int width, int height);
+  Workbench& bench_;
+  Drawing drawing_;
+  std::uint64_t material_ = 0, surface_ = 0;
+};
+
+/// Writes Drawing::picture's values as they are. Errors: as write_image.
+void write_picture(const std::filesystem::path& path, const Image& image);
+
+struct ReplayOptions {
+  std::filesystem::path open;    ///< before the first event; may be empty
+  std::filesystem::path picture; ///< of the end; may be empty
+  bool transparent = true;       ///< pictures without background
+  std::array<int, 2> size{0, 0}; ///< of pictures; 0: the session's
+  DocumentOptions document;
+};
+
+/// Plays a session without a display. `file` names it in messages; pictures that it writes count from `folder`.
+/// Errors: InvalidInput, naming the event, when one fails; SolverFailure where nothing can draw; IoFailure where a
+/// picture cannot be written. `done` is called at the end, while everything is still there.
+void replay(const EventList& session, const std::string& file, const std::filesystem::path& folder,
+            const ReplayOptions& options, const std::function<void(Workbench&, Screen&)>& done = {});
+
+} // namespace pith
