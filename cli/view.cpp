@@ -14,13 +14,14 @@ struct ViewVerbOptions {
   std::string size;
 };
 
-int run_size(const std::string& text, std::array<int, 2>& size) {
+std::array<int, 2> size_of(const std::string& text) {
+  std::array<int, 2> size{};
   int end = 0;
   const bool read = std::sscanf(text.c_str(), "%5dx%5d%n", &size[0], &size[1], &end) == 2 &&
                     end == static_cast<int>(text.size()) && size[0] >= 16 && size[1] >= 16 && size[0] <= 16384 &&
                     size[1] <= 16384;
   if (!read) throw CLI::ValidationError("--size", "'" + text + "' is not WIDTHxHEIGHT, such as 800x600");
-  return 0;
+  return size;
 }
 
 } // namespace
@@ -38,7 +39,7 @@ Verb view_verb(CLI::App& program) {
             DocumentOptions document;
             document.build.cache = options->cache.empty() ? default_cache_folder() : options->cache;
             std::array<int, 2> size{0, 0};
-            if (!options->size.empty()) run_size(options->size, size);
+            if (!options->size.empty()) size = size_of(options->size);
             if (!options->session.empty() || !options->screenshot.empty()) {
               if (!options->screenshot.empty()) check_output(options->screenshot, {"png"});
               EventList events;
@@ -49,9 +50,7 @@ Verb view_verb(CLI::App& program) {
               replaying.picture = options->screenshot;
               replaying.size = size;
               replaying.document = document;
-              const std::filesystem::path folder =
-                  options->session.empty() ? "." : std::filesystem::absolute(options->session).parent_path();
-              replay(events, options->session.filename().string(), folder, replaying, [&](Workbench& bench, Screen& screen) {
+              replay(events, options->session.filename().string(), {}, replaying, [&](Workbench& bench, Screen& screen) {
                 Json json = {{"driver", screen.driver()}, {"events", events.event.size()}};
                 if (bench.pieces()) json["pieces"] = bench.pieces()->piece.size();
                 session.print(json);

@@ -197,7 +197,10 @@ vec4 exemplar_value(Sight s, bool gaussian) {
   if (!filtered || source.x < 2u) return grid_value(grid, u);
   vec4 size = vec4(vec3(row(grid + 2u).yzw), float(row(grid + 3u).x));
   vec4 x = scale * s.dx * size, y = scale * s.dy * size;
-  float level = clamp(0.5 * log2(max(max(dot(x, x), dot(y, y)), 1.0)), 0.0, float(source.x - 1u));
+  // A pixel's footprint is long and thin where the surface is seen at a slant. Coarser texels are coarser along every
+  // axis of a volume, so to follow the long side would mix flesh into the skin: at most eight times the short one.
+  float a = dot(x, x), b = dot(y, y);
+  float level = clamp(0.5 * log2(max(max(min(a, b), max(a, b) / 64.0), 1.0)), 0.0, float(source.x - 1u));
   uint fine = uint(level);
   vec4 value = grid_value(grid + 4u * fine, u);
   float part = level - float(fine);

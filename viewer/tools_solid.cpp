@@ -40,7 +40,8 @@ public:
     Recipe recipe = bench.document().recipe();
     DepthConstraint constraint;
     constraint.value = bench.settings().depth;
-    constraint.fill = FaceFill{.near = there.rest};
+    constraint.fill.emplace();
+    constraint.fill->near = there.rest;
     lapped_solid(recipe, region_of(bench, there), bench.settings()).depth.push_back(constraint);
     bench.document().edit(std::move(recipe), "depth", Document::Build::later);
   }
@@ -102,7 +103,12 @@ public:
     DepthConstraint constraint;
     constraint.value = bench.settings().depth;
     constraint.stroke = point;
-    lapped_solid(recipe, region_, bench.settings()).depth.push_back(constraint);
+    std::vector<DepthConstraint>& all = lapped_solid(recipe, region_, bench.settings()).depth;
+    if (all.empty() && constraint.value > 0) { // depth is from somewhere: as long as nothing else is said, from the skin
+      all.emplace_back();
+      all.back().skin = true;
+    }
+    all.push_back(constraint);
     bench.document().edit(std::move(recipe), "depth", Document::Build::later);
   }
 };
