@@ -31,7 +31,8 @@ Verb view_verb(CLI::App& program) {
   CLI::App* app = program.add_subcommand("view", "the window: look, cut, design");
   app->add_option("file", options->file, "a recipe (.json), a model (.pith) or a closed surface");
   app->add_option("--replay", options->session, "play a recorded session without a display");
-  app->add_option("--screenshot", options->screenshot, "write a PNG of what shows (at the end of --replay, if given)");
+  app->add_option("--screenshot", options->screenshot,
+                  "write a PNG of what shows (at the end of --replay, if given)");
   app->add_option("--record", options->record, "write what is done in the window as a session");
   app->add_option("--size", options->size, "WIDTHxHEIGHT of the window or picture");
   app->add_option("--cache", options->cache, "folder for results of stages");
@@ -50,11 +51,12 @@ Verb view_verb(CLI::App& program) {
               replaying.picture = options->screenshot;
               replaying.size = size;
               replaying.document = document;
-              replay(events, options->session.filename().string(), {}, replaying, [&](Workbench& bench, Screen& screen) {
-                Json json = {{"driver", screen.driver()}, {"events", events.event.size()}};
-                if (bench.pieces()) json["pieces"] = bench.pieces()->piece.size();
-                session.print(json);
-              });
+              replay(events, options->session.filename().string(), {}, replaying,
+                     [&](Workbench& bench, Screen& screen) {
+                       Json json = {{"driver", screen.driver()}, {"events", events.event.size()}};
+                       if (bench.pieces()) json["pieces"] = bench.pieces()->piece.size();
+                       session.print(json);
+                     });
               return;
             }
             if (const auto cache = default_cache_folder(); !cache.empty()) document.recovery = cache / "recovery";

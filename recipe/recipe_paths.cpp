@@ -24,7 +24,8 @@ Recipe rebased(Recipe recipe, const fs::path& from, const fs::path& to) {
   const fs::path old_folder = fs::weakly_canonical(from), new_folder = fs::weakly_canonical(to);
   if (old_folder == new_folder) return recipe;
   for_each_path(recipe, [&](std::string& path) {
-    if (fs::path(path).is_relative()) path = (old_folder / path).lexically_normal().lexically_relative(new_folder).string();
+    if (fs::path(path).is_relative())
+      path = (old_folder / path).lexically_normal().lexically_relative(new_folder).string();
   });
   return recipe;
 }

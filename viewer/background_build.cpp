@@ -4,8 +4,7 @@
 
 namespace pith {
 
-BackgroundBuild::BackgroundBuild(BuildOptions options)
-    : builder_(std::move(options)), thread_([this] { work(); }) {}
+BackgroundBuild::BackgroundBuild(BuildOptions options) : builder_(std::move(options)), thread_([this] { work(); }) {}
 
 BackgroundBuild::~BackgroundBuild() {
   {

@@ -11,15 +11,21 @@ bool has_pieces(const Workbench& bench) { return has_document(bench) && !bench.d
 
 Command plain(std::string name, std::string menu, std::string label, std::string shortcut, std::string tip,
               std::function<void(Workbench&)> run, std::function<bool(const Workbench&)> enabled = {}) {
-  return {std::move(name), std::move(menu), std::move(label), std::move(shortcut), std::move(tip), false,
-          [run](Workbench& bench, const std::string&) { run(bench); }, std::move(enabled)};
+  return {std::move(name),
+          std::move(menu),
+          std::move(label),
+          std::move(shortcut),
+          std::move(tip),
+          false,
+          [run](Workbench& bench, const std::string&) { run(bench); },
+          std::move(enabled)};
 }
 
 Command with_text(std::string name, std::string menu, std::string label, std::string shortcut, std::string tip,
                   std::function<void(Workbench&, const std::string&)> run,
                   std::function<bool(const Workbench&)> enabled = {}) {
-  return {std::move(name), std::move(menu), std::move(label), std::move(shortcut), std::move(tip), true,
-          std::move(run), std::move(enabled)};
+  return {std::move(name), std::move(menu),   std::move(label), std::move(shortcut), std::move(tip), true,
+          std::move(run),  std::move(enabled)};
 }
 
 void save(Workbench& bench) {
@@ -52,75 +58,89 @@ std::vector<Command> all_commands() {
       with_text("open", "File", "Open…", "Ctrl+O", "a recipe, a model or a surface",
                 [](Workbench& bench, const std::string& path) { bench.document().open(path); }),
       plain("save", "File", "Save", "Ctrl+S", "to the document's own file", save, has_document),
-      with_text("save as", "File", "Save as…", "Ctrl+Shift+S", "a recipe (.json), or a model with its recipe (.pith)",
-                [](Workbench& bench, const std::string& path) {
-                  bench.document().save(path);
-                  bench.say("saved " + path);
-                },
-                has_document),
+      with_text(
+          "save as", "File", "Save as…", "Ctrl+Shift+S", "a recipe (.json), or a model with its recipe (.pith)",
+          [](Workbench& bench, const std::string& path) {
+            bench.document().save(path);
+            bench.say("saved " + path);
+          },
+          has_document),
       plain("quit", "File", "Quit", "Ctrl+Q", "", [](Workbench& bench) { bench.quit = true; }),
 
-      plain("undo", "Edit", "Undo", "Ctrl+Z", "", [](Workbench& bench) { bench.document().undo(); },
-            [](const Workbench& bench) { return bench.document().can_undo(); }),
-      plain("redo", "Edit", "Redo", "Ctrl+Shift+Z", "", [](Workbench& bench) { bench.document().redo(); },
-            [](const Workbench& bench) { return bench.document().can_redo(); }),
-      plain("undo all", "Edit", "Undo all", "", "", [](Workbench& bench) {
-        while (bench.document().can_undo()) bench.document().undo();
-      }),
-      plain("redo all", "Edit", "Redo all", "", "", [](Workbench& bench) {
-        while (bench.document().can_redo()) bench.document().redo();
-      }),
-      plain("update", "Edit", "Update", "U", "makes the model of what was drawn",
-            [](Workbench& bench) { bench.document().update(); }, has_document),
-      plain("cancel", "Edit", "Stop", "Escape", "gives up what is being made",
-            [](Workbench& bench) { bench.document().cancel(); }, has_document),
+      plain(
+          "undo", "Edit", "Undo", "Ctrl+Z", "", [](Workbench& bench) { bench.document().undo(); },
+          [](const Workbench& bench) { return bench.document().can_undo(); }),
+      plain(
+          "redo", "Edit", "Redo", "Ctrl+Shift+Z", "", [](Workbench& bench) { bench.document().redo(); },
+          [](const Workbench& bench) { return bench.document().can_redo(); }),
+      plain("undo all", "Edit", "Undo all", "", "",
+            [](Workbench& bench) {
+              while (bench.document().can_undo()) bench.document().undo();
+            }),
+      plain("redo all", "Edit", "Redo all", "", "",
+            [](Workbench& bench) {
+              while (bench.document().can_redo()) bench.document().redo();
+            }),
+      plain(
+          "update", "Edit", "Update", "U", "makes the model of what was drawn",
+          [](Workbench& bench) { bench.document().update(); }, has_document),
+      plain(
+          "cancel", "Edit", "Stop", "Escape", "gives up what is being made",
+          [](Workbench& bench) { bench.document().cancel(); }, has_document),
 
-      plain("fill solids", "Solids", "Fill", "F", "fills with the exemplar and type that are set", fill, has_document),
-      plain("clear depth", "Solids", "Clear depth", "", "takes all depth constraints back",
-            [](Workbench& bench) {
-              Recipe recipe = bench.document().recipe();
-              for (Solid& solid : recipe.solids) solid.depth.clear();
-              bench.document().edit(std::move(recipe), "clear depth", Document::Build::later);
-            },
+      plain("fill solids", "Solids", "Fill", "F", "fills with the exemplar and type that are set", fill,
             has_document),
-      plain("clear orientation", "Solids", "Clear orientation", "", "takes all orientation strokes back",
-            [](Workbench& bench) {
-              Recipe recipe = bench.document().recipe();
-              for (Solid& solid : recipe.solids) solid.orientation.clear();
-              bench.document().edit(std::move(recipe), "clear orientation", Document::Build::later);
-            },
-            has_document),
+      plain(
+          "clear depth", "Solids", "Clear depth", "", "takes all depth constraints back",
+          [](Workbench& bench) {
+            Recipe recipe = bench.document().recipe();
+            for (Solid& solid : recipe.solids) solid.depth.clear();
+            bench.document().edit(std::move(recipe), "clear depth", Document::Build::later);
+          },
+          has_document),
+      plain(
+          "clear orientation", "Solids", "Clear orientation", "", "takes all orientation strokes back",
+          [](Workbench& bench) {
+            Recipe recipe = bench.document().recipe();
+            for (Solid& solid : recipe.solids) solid.orientation.clear();
+            bench.document().edit(std::move(recipe), "clear orientation", Document::Build::later);
+          },
+          has_document),
 
-      plain("explode", "Pieces", "Explode", "E", "moves all pieces apart",
-            [](Workbench& bench) {
-              MoveStep step;
-              step.explode = bench.settings().explode;
-              bench.document().move(step);
-            },
-            has_pieces),
-      plain("drop", "Pieces", "Drop", "D", "puts every piece on the ground",
-            [](Workbench& bench) {
-              MoveStep step;
-              step.drop = bench.settings().drop_height;
-              bench.document().move(step);
-            },
-            has_pieces),
-      plain("clear cuts", "Pieces", "Whole again", "", "takes all cuts and moves back",
-            [](Workbench& bench) {
-              Recipe recipe = bench.document().recipe();
-              recipe.cuts.clear();
-              recipe.moves.clear();
-              bench.document().edit(std::move(recipe), "whole again");
-            },
-            has_document),
+      plain(
+          "explode", "Pieces", "Explode", "E", "moves all pieces apart",
+          [](Workbench& bench) {
+            MoveStep step;
+            step.explode = bench.settings().explode;
+            bench.document().move(step);
+          },
+          has_pieces),
+      plain(
+          "drop", "Pieces", "Drop", "D", "puts every piece on the ground",
+          [](Workbench& bench) {
+            MoveStep step;
+            step.drop = bench.settings().drop_height;
+            bench.document().move(step);
+          },
+          has_pieces),
+      plain(
+          "clear cuts", "Pieces", "Whole again", "", "takes all cuts and moves back",
+          [](Workbench& bench) {
+            Recipe recipe = bench.document().recipe();
+            recipe.cuts.clear();
+            recipe.moves.clear();
+            bench.document().edit(std::move(recipe), "whole again");
+          },
+          has_document),
 
       plain("home", "View", "Home", "Home", "shows everything", [](Workbench& bench) { bench.home(); }),
       plain("orthographic", "View", "Orthographic", "O", "on and off",
             [](Workbench& bench) { bench.camera().set_orthographic(!bench.view().orthographic()); }),
-      plain("copy view", "View", "Copy view", "Ctrl+C", "as text", [](Workbench& bench) { bench.say(bench.camera().text()); }),
-      with_text("paste view", "View", "Paste view", "Ctrl+V", "from text", [](Workbench& bench, const std::string& text) {
-        bench.camera() = Camera(parse_view(text, "view"));
-      })};
+      plain("copy view", "View", "Copy view", "Ctrl+C", "as text",
+            [](Workbench& bench) { bench.say(bench.camera().text()); }),
+      with_text(
+          "paste view", "View", "Paste view", "Ctrl+V", "from text",
+          [](Workbench& bench, const std::string& text) { bench.camera() = Camera(parse_view(text, "view")); })};
   const std::array<const char*, 3> axis = {"x", "y", "z"};
   for (int k = 0; k < 3; ++k)
     for (const int sign : {1, -1})

@@ -148,7 +148,8 @@ CutResult Document::cut(CutStep step) {
   after.root = before.root;
   after.pieces = std::make_shared<const Pieces>(std::move(pieces));
   after.keys = before.keys;
-  if (!before.recipe.moves.empty()) std::erase_if(after.keys, [](const auto& k) { return k.first.starts_with("move "); });
+  if (!before.recipe.moves.empty())
+    std::erase_if(after.keys, [](const auto& k) { return k.first.starts_with("move "); });
   add_last_cut(after.keys, after.recipe);
   push(std::move(after));
   return result;

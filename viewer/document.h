@@ -43,8 +43,8 @@ public:
   /// Takes up what a crash left.
   void open(const Recovered& recovered);
 
-  /// Writes the recipe (.json) or, with its model, a .pith; by extension. Paths in the recipe are made relative to the
-  /// new folder. Errors: IoFailure, InvalidInput for other extensions or a model that is not complete; nothing is
+  /// Writes the recipe (.json) or, with its model, a .pith; by extension. Paths in the recipe are made relative to
+  /// the new folder. Errors: IoFailure, InvalidInput for other extensions or a model that is not complete; nothing is
   /// lost then.
   void save(const std::filesystem::path& path);
 

@@ -141,7 +141,9 @@ struct Drawing::Parts {
     if (program) glDeleteProgram(program);
   }
   GLint at(const char* name) const { return glGetUniformLocation(program, name); }
-  void set(const char* name, const Vec3d& v) const { glUniform3f(at(name), float(v.x()), float(v.y()), float(v.z())); }
+  void set(const char* name, const Vec3d& v) const {
+    glUniform3f(at(name), float(v.x()), float(v.y()), float(v.z()));
+  }
   void set(const char* name, const Eigen::Matrix4d& m) const {
     const Eigen::Matrix4f f = m.cast<float>();
     glUniformMatrix4fv(at(name), 1, GL_FALSE, f.data());
@@ -180,7 +182,8 @@ void Drawing::set_material(const MaterialTables& tables) {
   glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
   const std::size_t needed = std::max({tables.row.size(), tables.texel.size(), tables.alpha.size()});
   if (needed > std::size_t(most))
-    throw InvalidInput("model", fmt::format("needs buffer textures of {} texels, and this OpenGL driver has {}", needed, most),
+    throw InvalidInput("model",
+                       fmt::format("needs buffer textures of {} texels, and this OpenGL driver has {}", needed, most),
                        "draw it with smaller exemplars or fewer tets, or render it (pith render)");
   parts_->table.set(tables.row.data(), 16 * tables.row.size(), GL_RGBA32UI);
   parts_->texels.set(tables.texel.data(), 8 * tables.texel.size(), GL_RGBA16);

@@ -1,9 +1,9 @@
 #pragma once
 // Draws a model's pieces with OpenGL 3.3 core. The only door to GL besides the window's and the panels'.
-#include "volume/base/image.h"
-#include "volume/base/view.h"
 #include "viewer/drawn_surface.h"
 #include "viewer/material_tables.h"
+#include "volume/base/image.h"
+#include "volume/base/view.h"
 
 #include <memory>
 #include <string>
@@ -11,9 +11,9 @@
 namespace pith {
 
 struct DrawOptions {
-  bool lit = true;            ///< false: the material's colours alone
-  bool filtered = true;       ///< coarser texels where texels are smaller than a pixel
-  bool transparent = false;   ///< no background
+  bool lit = true;          ///< false: the material's colours alone
+  bool filtered = true;     ///< coarser texels where texels are smaller than a pixel
+  bool transparent = false; ///< no background
   Vec3d uncovered{0.5, 0.5, 0.5};
   std::uint32_t highlighted = 0xffffffffu; ///< a piece
 };

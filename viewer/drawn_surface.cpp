@@ -14,15 +14,14 @@ Vec3d vector_of(const std::array<float, 3>& f) { return {f[0], f[1], f[2]}; }
 
 } // namespace
 
-DrawnSurface drawn_surface(const Root& root, const Pieces& pieces,
-                           const PerFacet<std::array<Vec3f, 3>>& skin_normal, const DisplaceOptions& displacement) {
+DrawnSurface drawn_surface(const Root& root, const Pieces& pieces, const PerFacet<std::array<Vec3f, 3>>& skin_normal,
+                           const DisplaceOptions& displacement) {
   const Model& model = root.model();
   const std::vector<VisibleSurface> visible = visible_surfaces(root, pieces, skin_normal, displacement);
   DrawnSurface drawn;
   std::size_t total = 0;
   for (const VisibleSurface& surface : visible) {
-    drawn.piece.push_back(
-        {surface.piece, surface.placement, 3 * total, 3 * (total + surface.triangle.size())});
+    drawn.piece.push_back({surface.piece, surface.placement, 3 * total, 3 * (total + surface.triangle.size())});
     total += surface.triangle.size();
   }
   drawn.vertex.resize(3 * total);
@@ -49,8 +48,9 @@ DrawnSurface drawn_surface(const Root& root, const Pieces& pieces,
         std::array<double, 3> in_facet{};
         if (facet.exists()) {
           const auto& c = model.boundary.corner[facet];
-          in_facet = closest_point({model.mesh.position[c[0]], model.mesh.position[c[1]], model.mesh.position[c[2]]}, x)
-                         .barycentric;
+          in_facet =
+              closest_point({model.mesh.position[c[0]], model.mesh.position[c[1]], model.mesh.position[c[2]]}, x)
+                  .barycentric;
           v.in_facet = {float(in_facet[0]), float(in_facet[1])};
         }
         Vec3f normal;
@@ -95,8 +95,8 @@ std::optional<SurfaceHit> nearest_hit(const DrawnSurface& surface, const Vec3d& 
           best = {distance, piece.begin / 3 + t, u, v};
       }
       const std::lock_guard lock(mutex);
-      if (best.distance < nearest.distance || (best.distance == nearest.distance && best.triangle < nearest.triangle &&
-                                               std::isfinite(best.distance))) {
+      if (best.distance < nearest.distance ||
+          (best.distance == nearest.distance && best.triangle < nearest.triangle && std::isfinite(best.distance))) {
         nearest = best;
         hit_piece = &piece;
       }

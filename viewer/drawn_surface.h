@@ -1,6 +1,6 @@
 #pragma once
-// The triangles that are drawn, three vertices each, with what a fragment needs to ask for its material: where it is in
-// which root tet and root facet. No GL in here.
+// The triangles that are drawn, three vertices each, with what a fragment needs to ask for its material: where it is
+// in which root tet and root facet. No GL in here.
 #include "volume/cut/displace.h"
 #include "volume/cut/piece.h"
 #include "volume/layer/model.h"
@@ -33,18 +33,18 @@ struct DrawnSurface {
 };
 
 /// What can be seen of the pieces (visible_surfaces). `skin_normal`: facet_corner_normals of the root.
-DrawnSurface drawn_surface(const Root& root, const Pieces& pieces,
-                           const PerFacet<std::array<Vec3f, 3>>& skin_normal, const DisplaceOptions& displacement);
+DrawnSurface drawn_surface(const Root& root, const Pieces& pieces, const PerFacet<std::array<Vec3f, 3>>& skin_normal,
+                           const DisplaceOptions& displacement);
 
 /// Where a ray meets what is drawn.
 struct SurfaceHit {
   double distance = 0;     ///< along the ray, mm
   std::uint32_t piece = 0; ///< number
   std::uint32_t triangle = 0;
-  Vec3d world, rest;   ///< the point where it stands, and at rest
-  Vec3d normal;        ///< world, unit, smooth
-  TetId tet;           ///< the root tet behind it
-  FacetId facet;       ///< none on a section
+  Vec3d world, rest; ///< the point where it stands, and at rest
+  Vec3d normal;      ///< world, unit, smooth
+  TetId tet;         ///< the root tet behind it
+  FacetId facet;     ///< none on a section
   FaceTag tag;
 };
 

@@ -46,8 +46,7 @@ private:
       component += channel.components;
     }
     const bool skin = layer.domain == Domain::skin;
-    const std::size_t simplices =
-        skin ? root_.model().boundary.facet_count() : root_.model().mesh.tet_count();
+    const std::size_t simplices = skin ? root_.model().boundary.facet_count() : root_.model().mesh.tet_count();
     const Blend& blend = layer.blend;
     const std::uint32_t rule = std::uint32_t(blend.mix) | std::uint32_t(blend.select) << 8 |
                                std::uint32_t(blend.preserves_variance()) << 16 |

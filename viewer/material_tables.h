@@ -13,8 +13,8 @@
 //   patch number   first row of the look-ups' patches, four a row
 //   corner   width 2 or 3: (coordinates, 0, weight); width 4: (coordinates), (weight, 0, 0, 0)
 //   patch    scale, offset, (source, mask or no_row, 0, 0)
-//   source   (levels, first grid, first grid of the Gaussian twin or 0, inverse table or 0), (grid of the mean or 0, …)
-//   grid     low, step, (first texel, sizes x, y, z), (size w, wraps, axes, 0)    wraps: two bits an axis (Wrap)
+//   source   (levels, first grid, first grid of the Gaussian twin or 0, inverse table or 0), (grid of the mean or 0,
+//   …) grid     low, step, (first texel, sizes x, y, z), (size w, wraps, axes, 0)    wraps: two bits an axis (Wrap)
 //   inverse  256 rows: colour and height of a Gaussian byte
 //   mask     (first alpha, sizes x, y, z), (open axes, axes, 0, 0)
 #include "volume/layer/model.h"

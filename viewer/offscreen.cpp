@@ -45,8 +45,9 @@ OffscreenContext::OffscreenContext() : parts_(std::make_unique<Parts>()) {
   EGLConfig config = nullptr;
   EGLint configs = 0;
   if (!eglChooseConfig(parts_->display, wanted, &config, 1, &configs) || configs == 0) config = nullptr;
-  const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 3,
-                            EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+  const EGLint version[] = {
+      EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
   parts_->context = eglCreateContext(parts_->display, config, EGL_NO_CONTEXT, version);
   if (parts_->context == EGL_NO_CONTEXT) refuse("there is no OpenGL 3.3");
   if (!eglMakeCurrent(parts_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, parts_->context))

@@ -40,9 +40,7 @@ void tip(const std::string& text) {
   if (!text.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text.c_str());
 }
 
-ImU32 color_of(const Vec3d& c) {
-  return ImGui::GetColorU32(ImVec4(float(c.x()), float(c.y()), float(c.z()), 0.9f));
-}
+ImU32 color_of(const Vec3d& c) { return ImGui::GetColorU32(ImVec4(float(c.x()), float(c.y()), float(c.z()), 0.9f)); }
 
 } // namespace
 
@@ -82,7 +80,7 @@ void Panels::ask(const Workbench& bench, const Command& command) {
   if (command.takes_text && command.name != "paste view") {
     parts_->file_command = command.name;
     parts_->path = command.name == "save as" && !bench.document().file().empty() ? bench.document().file().string()
-                                                                                   : fs::current_path().string() + "/";
+                                                                                 : fs::current_path().string() + "/";
     parts_->open_file_dialog = true;
   } else if (command.name == "paste view") {
     const char* text = ImGui::GetClipboardText();
@@ -220,7 +218,8 @@ void status_line(Workbench& bench, int width, int height) {
   if (line.empty()) return;
   ImGui::SetNextWindowPos({15 * unit, height - 2.2f * unit});
   ImGui::SetNextWindowSize({width - 15 * unit, 2.2f * unit});
-  ImGui::Begin("Status", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoInputs);
+  ImGui::Begin("Status", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoInputs);
   if (fraction >= 0) {
     ImGui::ProgressBar(fraction, {8 * unit, 0});
     ImGui::SameLine();

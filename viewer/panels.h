@@ -1,6 +1,6 @@
 #pragma once
-// Menus, toolbar, panels and dialogs, with Dear ImGui. They change nothing themselves: what a user chooses comes out as
-// events.
+// Menus, toolbar, panels and dialogs, with Dear ImGui. They change nothing themselves: what a user chooses comes out
+// as events.
 #include "viewer/workbench.h"
 
 #include <memory>
@@ -21,8 +21,8 @@ public:
   bool wants_mouse() const;
   bool wants_keys() const;
 
-  /// Asks for a file where a command needs one, for leave to lose unsaved work, or nothing; then the command comes out
-  /// of a later frame().
+  /// Asks for a file where a command needs one, for leave to lose unsaved work, or nothing; then the command comes
+  /// out of a later frame().
   void ask(const Workbench& bench, const Command& command);
   void ask_to_open(const Workbench& bench, const std::string& path); ///< a file was dropped
   void offer(std::vector<Recovered> left);                           ///< what a crash left behind

@@ -31,7 +31,9 @@ int locked(const fs::path& path) {
 
 } // namespace
 
-RecoveryFile::RecoveryFile(fs::path folder) : parts_(std::make_unique<Parts>()) { parts_->folder = std::move(folder); }
+RecoveryFile::RecoveryFile(fs::path folder) : parts_(std::make_unique<Parts>()) {
+  parts_->folder = std::move(folder);
+}
 
 RecoveryFile::~RecoveryFile() {
   forget();
@@ -54,8 +56,9 @@ void RecoveryFile::keep(const fs::path& file, const fs::path& folder, const std:
     if (parts_->lock < 0 && errno != EWOULDBLOCK) return;
   }
   try {
-    write_file(parts_->path,
-               nlohmann::ordered_json{{"file", file.string()}, {"folder", folder.string()}, {"recipe", recipe}}.dump());
+    write_file(
+        parts_->path,
+        nlohmann::ordered_json{{"file", file.string()}, {"folder", folder.string()}, {"recipe", recipe}}.dump());
   } catch (const IoFailure&) { // a full disk must not stop the work itself
   }
 }

@@ -60,18 +60,34 @@ Json json_of(const Event& event) {
   const auto point = Json{event.at.x(), event.at.y()};
   Json json;
   switch (event.kind) {
-  case Event::Kind::press: json["press"] = point; break;
-  case Event::Kind::drag: json["drag"] = point; break;
-  case Event::Kind::release: json["release"] = point; break;
-  case Event::Kind::double_click: json["double_click"] = point; break;
-  case Event::Kind::wheel: json["wheel"] = event.amount, json["at"] = point; break;
+  case Event::Kind::press:
+    json["press"] = point;
+    break;
+  case Event::Kind::drag:
+    json["drag"] = point;
+    break;
+  case Event::Kind::release:
+    json["release"] = point;
+    break;
+  case Event::Kind::double_click:
+    json["double_click"] = point;
+    break;
+  case Event::Kind::wheel:
+    json["wheel"] = event.amount, json["at"] = point;
+    break;
   case Event::Kind::command:
     json["do"] = event.name;
     if (!event.text.empty()) json["with"] = event.text;
     return json;
-  case Event::Kind::set: json["set"] = event.name, json["to"] = event.text; return json;
-  case Event::Kind::wait: json["wait"] = true; return json;
-  case Event::Kind::picture: json["picture"] = event.text; return json;
+  case Event::Kind::set:
+    json["set"] = event.name, json["to"] = event.text;
+    return json;
+  case Event::Kind::wait:
+    json["wait"] = true;
+    return json;
+  case Event::Kind::picture:
+    json["picture"] = event.text;
+    return json;
   }
   if (event.button != Button::left) json["button"] = button_names[static_cast<int>(event.button)];
   if (event.shift) json["shift"] = true;

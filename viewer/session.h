@@ -15,8 +15,8 @@ enum class Button { left, right, middle };
 
 struct Event {
   enum class Kind {
-    press,        ///< a mouse button at `at`
-    drag,         ///< the mouse has moved to `at`; between presses: it hovers there
+    press, ///< a mouse button at `at`
+    drag,  ///< the mouse has moved to `at`; between presses: it hovers there
     release,
     wheel,        ///< by `amount` notches, up is positive, at `at`
     double_click, ///< left button
@@ -38,10 +38,10 @@ struct EventList {
   std::vector<Event> event;
 };
 
-/// JSON: { "pith session": 1, "size": [w, h], "events": [ { "press": [u, v], "button": "left", "shift": true }, { "drag":
-/// [u, v] }, { "release": [u, v] }, { "wheel": 1, "at": [u, v] }, { "double_click": [u, v] }, { "do": "undo" }, { "do":
-/// "open", "with": "kiwi.json" }, { "set": "keep", "to": "left" }, { "wait": true }, { "picture": "out.png" } ] }.
-/// Errors: InvalidInput, naming the event.
+/// JSON: { "pith session": 1, "size": [w, h], "events": [ { "press": [u, v], "button": "left", "shift": true }, {
+/// "drag": [u, v] }, { "release": [u, v] }, { "wheel": 1, "at": [u, v] }, { "double_click": [u, v] }, { "do": "undo"
+/// }, { "do": "open", "with": "kiwi.json" }, { "set": "keep", "to": "left" }, { "wait": true }, { "picture":
+/// "out.png" } ] }. Errors: InvalidInput, naming the event.
 EventList parse_session(const std::string& text, const std::string& file);
 std::string session_text(const EventList& session);
 

@@ -14,7 +14,8 @@ Setting toggle(std::string name, std::string label, std::string tip, bool& value
   Setting s{name, std::move(label), std::move(tip), Setting::Kind::toggle, 0, 1, {}, {}, {}};
   s.text = [&value] { return value ? "on" : "off"; };
   s.set = [&value, name](const std::string& text) {
-    if (text != "on" && text != "off") throw InvalidInput(name, "'" + text + "' is neither on nor off", "say on or off");
+    if (text != "on" && text != "off")
+      throw InvalidInput(name, "'" + text + "' is neither on nor off", "say on or off");
     value = text == "on";
   };
   return s;
@@ -59,30 +60,33 @@ std::vector<Setting> setting_table(Settings& s) {
     const auto found = std::find(exemplars.begin(), exemplars.end(), s.exemplar);
     return found == exemplars.end() ? 0 : static_cast<int>(found - exemplars.begin());
   };
-  return {
-      choice("keep", "Keep", "which side of a cut stays", {"both", "left", "right"}, [&s] { return int(s.keep); },
-             [&s](int i) { s.keep = Keep(i); }),
-      number("spread", "Spread (mm)", "how far halves move apart after a cut", 0, 1000, s.spread),
-      toggle("one_piece", "One piece", "cut the piece alone on which the gesture begins", s.one_piece),
-      choice("plane", "Plane", "which way the plane faces", {"x", "y", "z", "drawn"}, [&s] { return s.plane_axis; },
-             [&s](int i) { s.plane_axis = i; }),
-      number("core_radius", "Core radius (mm)", "of the corer", 0.01, 1000, s.core_radius),
-      number("scoop_depth", "Scoop depth (mm)", "how deep a loop scoops; 0: it punches through", 0, 1000,
-             s.scoop_depth),
-      number("drop_height", "Ground (mm)", "height of the plane that Drop puts pieces on", -10000, 10000, s.drop_height),
-      number("explode", "Explode by", "part of its distance from the middle by which each piece moves away", -0.9, 10,
-             s.explode),
-      number("depth", "Depth", "what the depth tools draw: 0 outside, 1 innermost", 0, 1, s.depth),
-      choice("type", "Type", "how the texture looks from different sides, and along how many axes it changes", types,
-             [&s] { return int(s.type); }, [&s](int i) { s.type = TextureType(i); }),
-      choice("exemplar", "Exemplar", "the material", exemplars, exemplar_at,
-             [&s, exemplars](int i) { s.exemplar = exemplars[i]; }),
-      number("scale", "Scale (mm)", "millimetres per texture width, for types that do not follow depth", 0.01, 10000,
-             s.scale),
-      toggle("lit", "Light", "off: the material's colours alone", s.lit),
-      toggle("filtered", "Filter", "coarser texels where they are smaller than a pixel", s.filtered),
-      toggle("strokes", "Strokes", "show what was drawn", s.strokes),
-      number("relief", "Relief", "how far the skin's relief stands out", 0, 10, s.relief)};
+  return {choice(
+              "keep", "Keep", "which side of a cut stays", {"both", "left", "right"}, [&s] { return int(s.keep); },
+              [&s](int i) { s.keep = Keep(i); }),
+          number("spread", "Spread (mm)", "how far halves move apart after a cut", 0, 1000, s.spread),
+          toggle("one_piece", "One piece", "cut the piece alone on which the gesture begins", s.one_piece),
+          choice(
+              "plane", "Plane", "which way the plane faces", {"x", "y", "z", "drawn"}, [&s] { return s.plane_axis; },
+              [&s](int i) { s.plane_axis = i; }),
+          number("core_radius", "Core radius (mm)", "of the corer", 0.01, 1000, s.core_radius),
+          number("scoop_depth", "Scoop depth (mm)", "how deep a loop scoops; 0: it punches through", 0, 1000,
+                 s.scoop_depth),
+          number("drop_height", "Ground (mm)", "height of the plane that Drop puts pieces on", -10000, 10000,
+                 s.drop_height),
+          number("explode", "Explode by", "part of its distance from the middle by which each piece moves away", -0.9,
+                 10, s.explode),
+          number("depth", "Depth", "what the depth tools draw: 0 outside, 1 innermost", 0, 1, s.depth),
+          choice(
+              "type", "Type", "how the texture looks from different sides, and along how many axes it changes", types,
+              [&s] { return int(s.type); }, [&s](int i) { s.type = TextureType(i); }),
+          choice("exemplar", "Exemplar", "the material", exemplars, exemplar_at,
+                 [&s, exemplars](int i) { s.exemplar = exemplars[i]; }),
+          number("scale", "Scale (mm)", "millimetres per texture width, for types that do not follow depth", 0.01,
+                 10000, s.scale),
+          toggle("lit", "Light", "off: the material's colours alone", s.lit),
+          toggle("filtered", "Filter", "coarser texels where they are smaller than a pixel", s.filtered),
+          toggle("strokes", "Strokes", "show what was drawn", s.strokes),
+          number("relief", "Relief", "how far the skin's relief stands out", 0, 10, s.relief)};
 }
 
 } // namespace pith

@@ -29,9 +29,9 @@ struct Settings {
 struct Setting {
   std::string name, label, tip;
   enum class Kind { toggle, number, choice } kind = Kind::toggle;
-  double low = 0, high = 1;             ///< of a number
-  std::vector<std::string> choices;     ///< of a choice
-  std::function<std::string()> text;    ///< its value
+  double low = 0, high = 1;                    ///< of a number
+  std::vector<std::string> choices;            ///< of a choice
+  std::function<std::string()> text;           ///< its value
   std::function<void(const std::string&)> set; ///< InvalidInput when it is none of its values
 };
 

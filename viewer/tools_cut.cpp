@@ -167,11 +167,15 @@ private:
 } // namespace
 
 std::vector<ToolEntry> cut_tools() {
-  return {{"stroke", "Stroke", "2", "draw a line across: it cuts along the view", [] { return std::make_unique<StrokeTool>(); }},
-          {"plane", "Plane", "3", "drag a plane and see the section at once", [] { return std::make_unique<PlaneTool>(); }},
-          {"loop", "Loop", "4", "draw a loop: what it encloses is scooped or punched out", [] { return std::make_unique<LoopTool>(); }},
+  return {{"stroke", "Stroke", "2", "draw a line across: it cuts along the view",
+           [] { return std::make_unique<StrokeTool>(); }},
+          {"plane", "Plane", "3", "drag a plane and see the section at once",
+           [] { return std::make_unique<PlaneTool>(); }},
+          {"loop", "Loop", "4", "draw a loop: what it encloses is scooped or punched out",
+           [] { return std::make_unique<LoopTool>(); }},
           {"corer", "Corer", "5", "a cylinder along the view", [] { return std::make_unique<CorerTool>(); }},
-          {"peel", "Peel", "6", "drag to the right: peels off what is less deep", [] { return std::make_unique<PeelTool>(); }}};
+          {"peel", "Peel", "6", "drag to the right: peels off what is less deep",
+           [] { return std::make_unique<PeelTool>(); }}};
 }
 
 } // namespace pith

@@ -89,7 +89,8 @@ private:
 
 std::vector<ToolEntry> piece_tools() {
   return {{"move", "Move", "7", "drag a piece; with Ctrl it turns", [] { return std::make_unique<MoveTool>(); }},
-          {"join", "Join", "8", "drag from one piece to its neighbour: they become one", [] { return std::make_unique<JoinTool>(); }}};
+          {"join", "Join", "8", "drag from one piece to its neighbour: they become one",
+           [] { return std::make_unique<JoinTool>(); }}};
 }
 
 } // namespace pith

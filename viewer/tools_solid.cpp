@@ -27,7 +27,8 @@ std::int32_t region_of(Workbench& bench, const SurfaceHit& there) {
 
 SurfaceHit required_hit(Workbench& bench, const Vec2d& at, const char* what) {
   const auto there = bench.hit(at);
-  if (!there) throw InvalidInput(what, "the gesture does not begin on the solid", "begin it on the skin or on a section");
+  if (!there)
+    throw InvalidInput(what, "the gesture does not begin on the solid", "begin it on the skin or on a section");
   return *there;
 }
 
@@ -104,7 +105,8 @@ public:
     constraint.value = bench.settings().depth;
     constraint.stroke = point;
     std::vector<DepthConstraint>& all = lapped_solid(recipe, region_, bench.settings()).depth;
-    if (all.empty() && constraint.value > 0) { // depth is from somewhere: as long as nothing else is said, from the skin
+    if (all.empty() &&
+        constraint.value > 0) { // depth is from somewhere: as long as nothing else is said, from the skin
       all.emplace_back();
       all.back().skin = true;
     }
@@ -127,10 +129,14 @@ public:
 } // namespace
 
 std::vector<ToolEntry> solid_tools() {
-  return {{"fill", "Fill depth", "", "click: the skin up to its creases gets the depth", [] { return std::make_unique<FillTool>(); }},
-          {"face", "Face depth", "", "click: one triangle of the surface gets the depth", [] { return std::make_unique<FaceTool>(); }},
-          {"depth", "Depth stroke", "9", "draw on skin or sections: that line gets the depth", [] { return std::make_unique<DepthTool>(); }},
-          {"orientation", "Orientation", "0", "draw which way the texture runs", [] { return std::make_unique<OrientationTool>(); }}};
+  return {{"fill", "Fill depth", "", "click: the skin up to its creases gets the depth",
+           [] { return std::make_unique<FillTool>(); }},
+          {"face", "Face depth", "", "click: one triangle of the surface gets the depth",
+           [] { return std::make_unique<FaceTool>(); }},
+          {"depth", "Depth stroke", "9", "draw on skin or sections: that line gets the depth",
+           [] { return std::make_unique<DepthTool>(); }},
+          {"orientation", "Orientation", "0", "draw which way the texture runs",
+           [] { return std::make_unique<OrientationTool>(); }}};
 }
 
 } // namespace pith

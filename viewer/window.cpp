@@ -61,7 +61,8 @@ public:
     Screen screen(bench);
     bench_ = &bench, panels_ = &panels, screen_ = &screen;
     panels.offer(recoverable(options_.document.recovery));
-    if (!options_.open.empty()) handle({.kind = Event::Kind::command, .name = "open", .text = options_.open.string()});
+    if (!options_.open.empty())
+      handle({.kind = Event::Kind::command, .name = "open", .text = options_.open.string()});
     while (!bench.quit) {
       if (bench.document().building() || busy_frames_ > 0)
         glfwWaitEventsTimeout(0.05);
@@ -128,9 +129,11 @@ private:
 
   void listen() {
     glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) { of(w).moved(x, y); });
-    glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int b, int action, int mods) { of(w).button(b, action, mods); });
+    glfwSetMouseButtonCallback(window_,
+                               [](GLFWwindow* w, int b, int action, int mods) { of(w).button(b, action, mods); });
     glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double y) { of(w).scrolled(y); });
-    glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int mods) { of(w).key(key, action, mods); });
+    glfwSetKeyCallback(window_,
+                       [](GLFWwindow* w, int key, int, int action, int mods) { of(w).key(key, action, mods); });
     glfwSetDropCallback(window_, [](GLFWwindow* w, int count, const char** paths) {
       if (count > 0 && of(w).bench_) of(w).panels_->ask_to_open(*of(w).bench_, paths[0]);
     });
@@ -149,7 +152,9 @@ private:
     if (!bench_ || b > 2) return;
     if (action == GLFW_PRESS && panels_->wants_mouse()) return;
     Event event{.kind = action == GLFW_PRESS ? Event::Kind::press : Event::Kind::release, .at = at_};
-    event.button = b == GLFW_MOUSE_BUTTON_RIGHT ? Button::right : b == GLFW_MOUSE_BUTTON_MIDDLE ? Button::middle : Button::left;
+    event.button = b == GLFW_MOUSE_BUTTON_RIGHT    ? Button::right
+                   : b == GLFW_MOUSE_BUTTON_MIDDLE ? Button::middle
+                                                   : Button::left;
     event.shift = mods & GLFW_MOD_SHIFT;
     event.control = mods & GLFW_MOD_CONTROL;
     if (action == GLFW_RELEASE && !held_) return;
@@ -189,9 +194,11 @@ private:
 
   void title() {
     const Document& document = bench_->document();
-    const std::string text = document.empty() ? "pith"
-                             : (document.modified() ? "* " : "") +
-                                   (document.file().empty() ? "untitled" : document.file().filename().string()) + " – pith";
+    const std::string text = document.empty()
+                                 ? "pith"
+                                 : (document.modified() ? "* " : "") +
+                                       (document.file().empty() ? "untitled" : document.file().filename().string()) +
+                                       " – pith";
     if (text != title_) glfwSetWindowTitle(window_, (title_ = text).c_str());
   }
 

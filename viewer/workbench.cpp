@@ -32,7 +32,7 @@ void Workbench::handle(const Event& event) {
           std::find_if(table.begin(), table.end(), [&](const Command& c) { return c.name == event.name; });
       if (found == table.end())
         throw InvalidInput("command", "there is no '" + event.name + "'", "see the menus for what there is");
-      message_.clear();
+      say({});
       if (!found->enabled || found->enabled(*this)) found->run(*this, event.text);
       break;
     }
@@ -75,7 +75,7 @@ void Workbench::handle_mouse(const Event& event) {
     held_ = event.button;
     panning_ = event.button == Button::middle || event.shift;
     if (event.button == Button::left && !panning_) {
-      message_.clear();
+      say({});
       tool_->press(*this, event);
     }
     break;

@@ -74,7 +74,7 @@ public:
   // What is drawn.
   const Root* root() const; ///< null: nothing yet
   const Pieces* pieces() const;
-  const DrawnSurface& surface();                                   ///< of the preview, where there is one
+  const DrawnSurface& surface(); ///< of the preview, where there is one
   std::uint64_t material_version() const { return material_version_; }
   std::uint64_t surface_version() const { return surface_version_; } ///< changes when surface() does
   std::vector<WorldLine> world_lines() const;

@@ -1,9 +1,9 @@
 // What is drawn against what material_at says: every blend rule, sections and skin.
+#include "raytrace/scene_surface.h"
+#include "recipe/build.h"
 #include "tests/layer/five_models.h"
 #include "viewer/drawing.h"
 #include "viewer/offscreen.h"
-#include "raytrace/scene_surface.h"
-#include "recipe/build.h"
 #include "volume/base/image.h"
 #include "volume/cut/cut.h"
 
@@ -41,7 +41,8 @@ Difference difference(const Root& root, const Pieces& pieces, const View& view, 
         continue;
       }
       bool inner = true;
-      for (const auto& [dx, dy] : {std::pair(0.05, 0.5), std::pair(0.95, 0.5), std::pair(0.5, 0.05), std::pair(0.5, 0.95)}) {
+      for (const auto& [dx, dy] :
+           {std::pair(0.05, 0.5), std::pair(0.95, 0.5), std::pair(0.5, 0.05), std::pair(0.5, 0.95)}) {
         const auto near = hit_at(x + dx, y + dy);
         inner &= near && near->triangle == hit->triangle;
       }
@@ -73,11 +74,10 @@ Model patches_by_height() {
 class DrawnMethods : public ::testing::TestWithParam<int> {};
 
 TEST_P(DrawnMethods, PixelsAreMaterialAt) {
-  const std::array<Model (*)(), 5> make = {[] { return testing::masked_volumes(); },
-                                           [] { return testing::masked_images(); },
-                                           [] { return testing::periodic_tile(0.3f); },
-                                           [] { return testing::gutter_atlas(); },
-                                           [] { return patches_by_height(); }};
+  const std::array<Model (*)(), 5> make = {
+      [] { return testing::masked_volumes(); }, [] { return testing::masked_images(); },
+      [] { return testing::periodic_tile(0.3f); }, [] { return testing::gutter_atlas(); },
+      [] { return patches_by_height(); }};
   const Root root(make[GetParam()]());
   Pieces pieces = whole_piece(root.model().mesh);
   const auto plane = level_set_of(PlaneCut{.normal = {0.3, 0.2, 1}, .offset = 1.2});
@@ -104,7 +104,8 @@ TEST(Drawing, KiwiAcrossIsMaterialAt) {
   const Box box = bounds_of(root.model().mesh);
   const Difference d = difference(
       root, built.pieces,
-      {.eye = box.center() + Vec3d(1.0, 0.9, 0.75) * box.diagonal(), .target = box.center(), .vertical_angle = 0.6}, 240);
+      {.eye = box.center() + Vec3d(1.0, 0.9, 0.75) * box.diagonal(), .target = box.center(), .vertical_angle = 0.6},
+      240);
   EXPECT_GT(d.section, 300u);
   EXPECT_GT(d.skin, 100u);
   EXPECT_EQ(d.beyond, 0u) << d.worst << " of 255 at worst, " << d.pixels << " pixels";
