@@ -84,5 +84,6 @@ std::vector<Row> lap_rows();    ///< lap/*
 std::vector<Row> field_rows();  ///< rbf/*
 std::vector<Row> sample_rows(); ///< sample/*
 std::vector<Row> cut_rows();    ///< cut/*
+std::vector<Row> view_rows();   ///< view/*
 
 } // namespace pith::bench

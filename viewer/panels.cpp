@@ -163,7 +163,7 @@ void setting_widget(const Setting& setting, std::vector<Event>& out) {
 void side_panel(Panels& panels, Workbench& bench, float top, float height, std::vector<Event>& out) {
   const float unit = ImGui::GetFontSize();
   ImGui::SetNextWindowPos({0, top});
-  ImGui::SetNextWindowSize({15 * unit, height - top});
+  ImGui::SetNextWindowSize({18 * unit, height - top});
   ImGui::Begin("Tools", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoBringToFrontOnFocus);
@@ -173,12 +173,12 @@ void side_panel(Panels& panels, Workbench& bench, float top, float height, std::
     if (column++ % 2) ImGui::SameLine();
     const bool chosen = command.name == "tool " + bench.tool_name();
     if (chosen) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
-    if (ImGui::Button(command.label.c_str(), {6.7f * unit, 0})) panels.ask(bench, command);
+    if (ImGui::Button(command.label.c_str(), {8.2f * unit, 0})) panels.ask(bench, command);
     if (chosen) ImGui::PopStyleColor();
     tip(command.tip + (command.shortcut.empty() ? "" : " (" + command.shortcut + ")"));
   }
   ImGui::Separator();
-  ImGui::PushItemWidth(6.5f * unit);
+  ImGui::PushItemWidth(7.5f * unit);
   for (const Setting& setting : bench.setting_list()) setting_widget(setting, out);
   ImGui::PopItemWidth();
   ImGui::Separator();
@@ -186,7 +186,7 @@ void side_panel(Panels& panels, Workbench& bench, float top, float height, std::
     const auto button = [&](const char* name) {
       for (const Command& command : command_table())
         if (command.name == name) {
-          if (ImGui::Button(command.label.c_str(), {6.7f * unit, 0})) panels.ask(bench, command);
+          if (ImGui::Button(command.label.c_str(), {8.2f * unit, 0})) panels.ask(bench, command);
           tip(command.tip);
         }
     };
@@ -216,8 +216,8 @@ void status_line(Workbench& bench, int width, int height) {
     line = "Open a file (Ctrl+O), or drop one here: a recipe, a model or a closed surface. H shows help.";
   }
   if (line.empty()) return;
-  ImGui::SetNextWindowPos({15 * unit, height - 2.2f * unit});
-  ImGui::SetNextWindowSize({width - 15 * unit, 2.2f * unit});
+  ImGui::SetNextWindowPos({18 * unit, height - 2.2f * unit});
+  ImGui::SetNextWindowSize({width - 18 * unit, 2.2f * unit});
   ImGui::Begin("Status", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoInputs);
   if (fraction >= 0) {
@@ -280,7 +280,7 @@ void overlay(Workbench& bench, int width, int height) {
 
 } // namespace
 
-std::vector<Event> Panels::frame(Workbench& bench, int width, int height) {
+std::vector<Event> Panels::build(Workbench& bench, int width, int height) {
   Parts& p = *parts_;
   ImGui_ImplOpenGL3_NewFrame();
   if (p.has_window) ImGui_ImplGlfw_NewFrame();
@@ -363,8 +363,9 @@ std::vector<Event> Panels::frame(Workbench& bench, int width, int height) {
     ImGui::EndPopup();
   }
   ImGui::Render();
-  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
   return std::exchange(p.out, {});
 }
+
+void Panels::draw() { ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData()); }
 
 } // namespace pith

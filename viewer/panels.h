@@ -15,8 +15,10 @@ public:
   Panels(const Panels&) = delete;
   Panels& operator=(const Panels&) = delete;
 
-  /// Builds one frame over width × height pixels and draws it into the current framebuffer. Returns what was chosen.
-  std::vector<Event> frame(Workbench& bench, int width, int height);
+  /// Builds one frame over width × height pixels. Returns what was chosen.
+  std::vector<Event> build(Workbench& bench, int width, int height);
+  /// Draws it into the current framebuffer.
+  void draw();
 
   bool wants_mouse() const;
   bool wants_keys() const;

@@ -15,8 +15,10 @@ public:
   Image picture(int width, int height);
   std::string driver() const { return drawing_.driver(); }
 
-private:
+  /// Hands over what has changed; draw() and picture() do it by themselves.
   DrawOptions follow(int width, int height);
+
+private:
   Workbench& bench_;
   Drawing drawing_;
   std::uint64_t material_ = 0, surface_ = 0;

@@ -9,7 +9,7 @@ namespace pith {
 struct Settings {
   // cutting
   Keep keep = Keep::both;
-  double spread = 0;       ///< mm
+  double spread = 0;       ///< mm; set afresh when a document is opened
   bool one_piece = false;  ///< cut the piece alone on which the gesture begins
   int plane_axis = 3;      ///< x, y, z, or as drawn
   double core_radius = 5;  ///< mm

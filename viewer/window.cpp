@@ -74,8 +74,10 @@ public:
       glfwGetFramebufferSize(window_, &width, &height);
       if (width > 0 && height > 0) {
         screen.draw(width, height);
-        for (const Event& event : panels.frame(bench, width, height)) handle(event);
+        const std::vector<Event> chosen = panels.build(bench, width, height);
+        panels.draw();
         glfwSwapBuffers(window_);
+        for (const Event& event : chosen) handle(event);
       }
       if (panels.taken_up() && !took_up_) {
         took_up_ = true;
@@ -176,6 +178,7 @@ private:
 
   void key(int key, int action, int mods) {
     if (!bench_ || action != GLFW_PRESS || panels_->wants_keys()) return;
+    busy_frames_ = 3;
     if (key == GLFW_KEY_H && mods == 0) return panels_->toggle_help();
     if (key == GLFW_KEY_F12) {
       int number = 1;

@@ -157,6 +157,7 @@ void Workbench::refresh() {
   }
   if (ready && !framed_) {
     framed_ = true;
+    settings_.spread = std::round(8 * bounds_of(ready->root.model().mesh).diagonal()) / 100; // halves fall apart
     if (const auto& view = document_.recipe().view)
       camera_ = Camera(*view);
     else
@@ -183,7 +184,9 @@ void Workbench::end_preview() {
 
 CutStep Workbench::with_settings(CutStep step, const Vec2d& start) {
   step.keep = settings_.keep;
-  step.spread = settings_.spread;
+  const auto* stroke = std::get_if<StrokeCut>(&step.shape);
+  const bool around = step.depth || (stroke && stroke->closed) || std::holds_alternative<CylinderCut>(step.shape);
+  step.spread = around ? 0 : settings_.spread; // what lies within another piece has no side to fall to
   if (settings_.one_piece) {
     end_preview();
     const auto there = hit(start);

@@ -83,7 +83,7 @@ public:
   // For tools.
   void preview(const CutStep& step); ///< shows what the cut would leave; nothing where it fails
   void end_preview();
-  /// Commits with the settings' keep, spread and scope; `start`: where the gesture began.
+  /// Commits with the settings' keep, spread (of open cuts) and scope; `start`: where the gesture began.
   void commit(CutStep step, const Vec2d& start);
   CutStep with_settings(CutStep step, const Vec2d& start);
   void show_placement(std::uint32_t piece, const Rigid& placement); ///< until the next commit
