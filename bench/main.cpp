@@ -62,7 +62,7 @@ int main(int count, char** arguments) {
   settings.programs = std::filesystem::read_symlink("/proc/self/exe").parent_path();
 
   std::vector<Row> rows;
-  for (auto* group : {mesh_rows, field_rows, lap_rows, sample_rows, cut_rows, build_rows})
+  for (auto* group : {mesh_rows, field_rows, lap_rows, sample_rows, cut_rows, view_rows, build_rows})
     for (Row& row : group()) rows.push_back(std::move(row));
   if (!only.empty()) {
     try {

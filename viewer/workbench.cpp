@@ -186,7 +186,8 @@ CutStep Workbench::with_settings(CutStep step, const Vec2d& start) {
   step.keep = settings_.keep;
   const auto* stroke = std::get_if<StrokeCut>(&step.shape);
   const bool around = step.depth || (stroke && stroke->closed) || std::holds_alternative<CylinderCut>(step.shape);
-  step.spread = around ? 0 : settings_.spread; // what lies within another piece has no side to fall to
+  // One half alone stays where it is; what lies within another piece has no side to fall to.
+  step.spread = around || step.keep != Keep::both ? 0 : settings_.spread;
   if (settings_.one_piece) {
     end_preview();
     const auto there = hit(start);

@@ -80,7 +80,9 @@ TEST_P(Sessions, LeavesWhatItShould) {
   if (name == "scoop") {
     EXPECT_EQ(p.recipe.moves.size(), 1u);
   }
-  if (name == "face") EXPECT_TRUE(p.recipe.solids.empty()); // taken back
+  if (name == "face") {
+    EXPECT_TRUE(p.recipe.solids.empty()); // taken back
+  }
   if (name == "paint") {
     ASSERT_EQ(p.recipe.solids.size(), 1u);
     EXPECT_EQ(p.recipe.solids[0].exemplar.procedural, "sponge");
