@@ -13,6 +13,7 @@ usage: ./do VERB [options]
   demo                           build, then make, cut and render the kiwi; pictures and model land in build/demo
   gallery [NAME...]              build, then make the models of docs/gallery.md (or those named) and their pictures in
                                  docs/gallery: whole, cut across and cut along
+  window                         build, then play the session of docs/window.md without a display and make its pictures
   quality [NAME...]              build, then make the models of docs/quality.md (or those named) and print its table
   test [--oracles] [--slow] [--no-sanitizers]
                                  build and pass the tests, the fast ones under sanitizers too; also those that compare
@@ -22,7 +23,7 @@ usage: ./do VERB [options]
                                  write FILE
   format [--check]               clang-format over pith's sources; --check only says what would change
 
-deps runs by itself before build, demo, gallery, quality, test and bench. PITH_SHARED_DATA names a folder of real meshes, images and
+deps runs by itself before build, demo, gallery, window, quality, test and bench. PITH_SHARED_DATA names a folder of real meshes, images and
 volumes that some tests and benchmarks read; without it they are skipped, saying so.
 END
 }
@@ -32,7 +33,7 @@ packages=(
   build-essential cmake ninja-build pkg-config ccache mold git
   libeigen3-dev libtbb-dev libfmt-dev libcli11-dev nlohmann-json3-dev libzip-dev
   libcgal-dev libtet1.5-dev libopenvdb-dev libboost-iostreams-dev libembree-dev libopenimageio-dev
-  libglfw3-dev libepoxy-dev libimgui-dev
+  libglfw3-dev libepoxy-dev libimgui-dev libegl1 libgl1 libgl1-mesa-dri
   libgtest-dev libbenchmark-dev
 )
 
@@ -190,6 +191,17 @@ gallery() {
   done
 }
 
+# The pictures of docs/window.md.
+window() {
+  [[ $# -eq 0 ]] || fail "window takes no options" 2
+  deps
+  configured release
+  built release pith
+  mkdir -p docs/window
+  step "playing docs/window.json"
+  build/release/pith view --replay docs/window.json --panels
+}
+
 # The models whose fills are measured: recipes of data/recipes.
 quality_models=({table1/,}{kiwi,carrot,tree,tube,strata,watermelon,cake} brick orange)
 
@@ -309,7 +321,7 @@ format() {
 verb=${1:-help}
 [[ $# -gt 0 ]] && shift
 case $verb in
-deps | build | demo | gallery | quality | bench | format) "$verb" "$@" ;;
+deps | build | demo | gallery | window | quality | bench | format) "$verb" "$@" ;;
 test) run_tests "$@" ;;
 help | -h | --help) usage ;;
 *)

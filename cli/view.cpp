@@ -12,6 +12,7 @@ namespace {
 struct ViewVerbOptions {
   std::filesystem::path file, session, screenshot, record, cache;
   std::string size;
+  bool panels = false;
 };
 
 std::array<int, 2> size_of(const std::string& text) {
@@ -33,6 +34,7 @@ Verb view_verb(CLI::App& program) {
   app->add_option("--replay", options->session, "play a recorded session without a display");
   app->add_option("--screenshot", options->screenshot,
                   "write a PNG of what shows (at the end of --replay, if given)");
+  app->add_flag("--panels", options->panels, "pictures show menus and panels too, as the window does");
   app->add_option("--record", options->record, "write what is done in the window as a session");
   app->add_option("--size", options->size, "WIDTHxHEIGHT of the window or picture");
   app->add_option("--cache", options->cache, "folder for results of stages");
@@ -50,6 +52,7 @@ Verb view_verb(CLI::App& program) {
               replaying.open = options->file;
               replaying.picture = options->screenshot;
               replaying.size = size;
+              replaying.panels = options->panels;
               replaying.document = document;
               replay(events, options->session.filename().string(), {}, replaying,
                      [&](Workbench& bench, Screen& screen) {

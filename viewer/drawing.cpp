@@ -264,7 +264,8 @@ void Drawing::draw(const View& view, int width, int height, const DrawOptions& o
   require_no_error("draw");
 }
 
-Image Drawing::picture(const View& view, int width, int height, const DrawOptions& options) {
+Image Drawing::picture(const View& view, int width, int height, const DrawOptions& options,
+                       const std::function<void()>& over) {
   GLint before = 0;
   glGetIntegerv(GL_FRAMEBUFFER_BINDING, &before);
   Framebuffer frame;
@@ -284,6 +285,7 @@ Image Drawing::picture(const View& view, int width, int height, const DrawOption
     throw SolverFailure(fmt::format("OpenGL cannot draw into a picture of {} × {} pixels", width, height));
   }
   draw(view, width, height, options);
+  if (over) over();
   std::vector<std::uint8_t> bytes(std::size_t(width) * height * 4);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, bytes.data());

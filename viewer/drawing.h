@@ -5,6 +5,7 @@
 #include "volume/base/image.h"
 #include "volume/base/view.h"
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -43,7 +44,9 @@ public:
   void draw(const View& view, int width, int height, const DrawOptions& options = {});
 
   /// Draws into a picture of its own: 4 channels, sRGB-encoded values 0 … 1 (not linear), top row first.
-  Image picture(const View& view, int width, int height, const DrawOptions& options = {});
+  /// `over` draws on top before it is read back.
+  Image picture(const View& view, int width, int height, const DrawOptions& options = {},
+                const std::function<void()>& over = {});
 
 private:
   struct Parts;

@@ -29,8 +29,13 @@ void Screen::draw(int width, int height) {
   drawing_.draw(bench_.view(), width, height, options);
 }
 
-Image Screen::picture(int width, int height) {
+Image Screen::picture(int width, int height, Panels* panels) {
   DrawOptions options = follow(width, height);
+  if (panels) {
+    panels->build(bench_, width, height); // twice: what has just appeared finds its size in the first
+    panels->build(bench_, width, height);
+    return drawing_.picture(bench_.view(), width, height, options, [&] { panels->draw(); });
+  }
   options.transparent = true;
   return drawing_.picture(bench_.view(), width, height, options);
 }
@@ -45,6 +50,11 @@ void replay(const EventList& session, const std::string& file, const std::filesy
   const OffscreenContext context;
   Workbench bench(options.document, static_cast<double>(size[0]) / size[1]);
   Screen screen(bench);
+  std::optional<Panels> panels;
+  if (options.panels) panels.emplace(nullptr, 1.0f);
+  const auto write = [&](const std::filesystem::path& path) {
+    write_picture(path, screen.picture(size[0], size[1], panels ? &*panels : nullptr));
+  };
   const auto require_well = [&](const std::string& where) {
     if (bench.message_is_error() && !bench.message().empty())
       throw InvalidInput(where, bench.message(), "mend the session, or open what it was recorded on");
@@ -59,11 +69,11 @@ void replay(const EventList& session, const std::string& file, const std::filesy
     Event event = session.event[i];
     if (event.kind == Event::Kind::command && (event.name == "open" || event.name == "save as"))
       event.text = (folder / event.text).string(); // an absolute path stays
-    if (event.kind == Event::Kind::picture) write_picture(folder / event.text, screen.picture(size[0], size[1]));
+    if (event.kind == Event::Kind::picture) write(folder / event.text);
     bench.handle(event);
     require_well(file + ": /events/" + std::to_string(i));
   }
-  if (!options.picture.empty()) write_picture(options.picture, screen.picture(size[0], size[1]));
+  if (!options.picture.empty()) write(options.picture);
   if (done) done(bench, screen);
 }
 

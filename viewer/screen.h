@@ -1,6 +1,7 @@
 #pragma once
 // A workbench drawn with GL: hands over what has changed, and draws.
 #include "viewer/drawing.h"
+#include "viewer/panels.h"
 #include "viewer/workbench.h"
 
 namespace pith {
@@ -11,8 +12,9 @@ public:
 
   /// Into the current framebuffer.
   void draw(int width, int height);
-  /// A picture, transparent where nothing is; as Drawing::picture.
-  Image picture(int width, int height);
+  /// A picture, as Drawing::picture: of the model alone, transparent where nothing is; or with panels, as in the
+  /// window.
+  Image picture(int width, int height, Panels* panels = nullptr);
   std::string driver() const { return drawing_.driver(); }
 
   /// Hands over what has changed; draw() and picture() do it by themselves.
@@ -30,7 +32,7 @@ void write_picture(const std::filesystem::path& path, const Image& image);
 struct ReplayOptions {
   std::filesystem::path open;    ///< before the first event; may be empty
   std::filesystem::path picture; ///< of the end; may be empty
-  bool transparent = true;       ///< pictures without background
+  bool panels = false;           ///< pictures with panels and background, as in the window
   std::array<int, 2> size{0, 0}; ///< of pictures; 0: the session's
   DocumentOptions document;
 };

@@ -362,7 +362,7 @@ void main() {
     if (dot(n, to_eye) < 0.0) n = normalize(n - 1.02 * dot(n, to_eye) * to_eye);
     float sky = 0.5 + 0.5 * dot(n, up);
     float key = max(dot(n, key_light), 0.0), soft = max(0.35 + 0.65 * dot(n, key_light), 0.0);
-    vec3 light = mix(vec3(0.30, 0.28, 0.26), vec3(0.55, 0.57, 0.60), sky) + vec3(0.50, 0.49, 0.46) * mix(soft, key, 0.6);
+    vec3 light = mix(vec3(0.44, 0.42, 0.40), vec3(0.66, 0.68, 0.71), sky) + vec3(0.40, 0.39, 0.37) * mix(soft, key, 0.6);
     float shine = pow(max(dot(n, normalize(key_light + to_eye)), 0.0), 48.0);
     color = color * light + 0.06 * shine;
   }
