@@ -128,7 +128,7 @@ CutResult apply_cut(Pieces& pieces, const StepContext& context, const CutStep& s
   std::sort(options.only.begin(), options.only.end());
 
   CutResult result = cut_pieces(work, context, knife, options, where);
-  separate_pieces(work, root, result);
+  if (context.separate) separate_pieces(work, root, result);
   if (step.spread > 0) spread(work, result, root, step.spread);
 
   if (step.keep != Keep::both) {

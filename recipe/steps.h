@@ -13,6 +13,9 @@ struct StepContext {
   const Locator& locator;
   std::filesystem::path folder = {}; ///< what the paths of surfaces are relative to
   Cutter* cutter = nullptr;          ///< of the model; null: every cut passes over all tets
+  /// False: halves that do not hang together stay one piece. They look the same, and it saves a pass over all tets: for
+  /// a cut that follows the mouse.
+  bool separate = true;
 };
 
 /// Does one cut, or joins pieces. Halves that do not hang together become pieces of their own. `where` names the step

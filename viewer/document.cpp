@@ -129,7 +129,7 @@ Pieces Document::preview(const CutStep& step) const {
   const DocumentState& state = history_[at_];
   Pieces pieces = *state.pieces;
   const Root& root = state.root->root;
-  apply_cut(pieces, {root.model(), root.locator(), folder_, &state.root->cutter}, step, "cut");
+  apply_cut(pieces, {root.model(), root.locator(), folder_, &state.root->cutter, false}, step, "cut");
   return pieces;
 }
 

@@ -63,7 +63,7 @@ public:
   /// unchanged then.
   CutResult cut(CutStep step);
   void move(MoveStep step);
-  /// What a cut would leave, without an edit. Errors as cut().
+  /// What a cut would leave, without an edit; halves that do not hang together are one piece yet. Errors as cut().
   Pieces preview(const CutStep& step) const;
 
   /// Any other edit. Built at once in the background, or when update() is called.
