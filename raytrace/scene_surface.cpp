@@ -143,9 +143,11 @@ std::vector<VisibleSurface> visible_surfaces(const Root& root, const Pieces& pie
   // Two triangles on the same three vertices at the same place bound the same matter from both sides: an unmoved
   // section, or an interface between regions. Neither is seen.
   const std::vector<std::uint32_t> place = places_of(pieces);
+  std::vector<std::uint32_t> there(count, 0); // pieces that stand where piece i does
+  for (const std::uint32_t p : place) ++there[p];
   std::vector<FaceKey> faces;
   for (std::uint32_t p = 0; p < count; ++p)
-    for (std::uint32_t t = 0; t < whole[p].triangle.size(); ++t) {
+    for (std::uint32_t t = 0; there[place[p]] > 1 && t < whole[p].triangle.size(); ++t) {
       FaceKey key{place[p], {}, p, t};
       for (int i = 0; i < 3; ++i) key.vertex[i] = whole[p].vertex[whole[p].triangle[t].corner[i]];
       std::sort(key.vertex.begin(), key.vertex.end());

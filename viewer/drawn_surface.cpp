@@ -12,6 +12,30 @@ namespace {
 std::array<float, 3> floats(const Vec3d& v) { return {float(v.x()), float(v.y()), float(v.z())}; }
 Vec3d vector_of(const std::array<float, 3>& f) { return {f[0], f[1], f[2]}; }
 
+/// Barycentric coordinates; most points are corners, of which nothing need be computed.
+std::array<double, 4> in_tet(const TetMesh& mesh, TetId tet, const Vec3d& x) {
+  for (int i = 0; i < 4; ++i)
+    if (mesh.position[mesh.corner[tet][i]] == x) {
+      std::array<double, 4> corner{};
+      corner[i] = 1;
+      return corner;
+    }
+  return barycentric(mesh, tet, x);
+}
+std::array<double, 3> in_facet_of(const Model& model, FacetId facet, const Vec3d& x) {
+  const auto& c = model.boundary.corner[facet];
+  std::array<Vec3d, 3> triangle;
+  for (int i = 0; i < 3; ++i) {
+    triangle[i] = model.mesh.position[c[i]];
+    if (triangle[i] == x) {
+      std::array<double, 3> corner{};
+      corner[i] = 1;
+      return corner;
+    }
+  }
+  return closest_point(triangle, x).barycentric;
+}
+
 } // namespace
 
 DrawnSurface drawn_surface(const Root& root, const Pieces& pieces, const PerFacet<std::array<Vec3f, 3>>& skin_normal,
@@ -37,7 +61,7 @@ DrawnSurface drawn_surface(const Root& root, const Pieces& pieces, const PerFace
       for (int i = 0; i < 3; ++i) {
         const std::uint32_t corner = triangle.corner[i];
         const Vec3d& x = rest[corner];
-        const std::array<double, 4> b = barycentric(model.mesh, triangle.root, x);
+        const std::array<double, 4> b = in_tet(model.mesh, triangle.root, x);
         DrawnVertex& v = drawn.vertex[first + 3 * t + i];
         v.position = floats(surface.position[corner]);
         v.in_tet = {float(b[0]), float(b[1]), float(b[2])};
@@ -47,10 +71,7 @@ DrawnSurface drawn_surface(const Root& root, const Pieces& pieces, const PerFace
         v.region = model.mesh.region[triangle.root];
         std::array<double, 3> in_facet{};
         if (facet.exists()) {
-          const auto& c = model.boundary.corner[facet];
-          in_facet =
-              closest_point({model.mesh.position[c[0]], model.mesh.position[c[1]], model.mesh.position[c[2]]}, x)
-                  .barycentric;
+          in_facet = in_facet_of(model, facet, x);
           v.in_facet = {float(in_facet[0]), float(in_facet[1])};
         }
         Vec3f normal;
