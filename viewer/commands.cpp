@@ -47,7 +47,10 @@ void fill(Workbench& bench) {
     solid.exemplar = {};
     solid.exemplar.procedural = settings.exemplar;
     solid.scale = traits.uses_scale ? settings.scale : 0;
-    if (!traits.uses_depth) solid.depth.clear();
+    if (!traits.uses_depth) {
+      solid.depth.clear();
+      for (ScatterStep& scatter : solid.scatter) scatter.options.depth = ScatterOptions().depth;
+    }
     if (!traits.uses_stroke) solid.orientation.clear();
   }
   bench.document().edit(std::move(recipe), "fill");

@@ -57,13 +57,12 @@ void replay(const EventList& session, const std::string& file, const std::filesy
   };
   const auto require_well = [&](const std::string& where) {
     if (bench.message_is_error() && !bench.message().empty())
-      throw InvalidInput(where, bench.message(), "mend the session, or open what it was recorded on");
+      throw InvalidInput(where, bench.message(), "mend that event, or open what the session was recorded on");
   };
   if (!options.open.empty()) {
-    bench.handle({.kind = Event::Kind::command, .name = "open", .text = options.open.string()});
-    require_well(file);
+    bench.document().open(options.open);
     bench.handle({.kind = Event::Kind::wait});
-    require_well(file);
+    require_well(options.open.filename().string());
   }
   for (std::size_t i = 0; i < session.event.size() && !bench.quit; ++i) {
     Event event = session.event[i];

@@ -56,9 +56,13 @@ std::vector<Setting> setting_table(Settings& s) {
   std::vector<std::string> types, exemplars;
   for (int t = 0; t < texture_type_count; ++t) types.push_back(traits_of(static_cast<TextureType>(t)).name);
   for (const auto& name : procedural_names()) exemplars.emplace_back(name);
-  const auto exemplar_at = [&s, exemplars] {
-    const auto found = std::find(exemplars.begin(), exemplars.end(), s.exemplar);
-    return found == exemplars.end() ? 0 : static_cast<int>(found - exemplars.begin());
+  const auto exemplar = [&exemplars](std::string name, std::string label, std::string tip, std::string& value) {
+    const auto at = [&value, exemplars] {
+      const auto found = std::find(exemplars.begin(), exemplars.end(), value);
+      return found == exemplars.end() ? 0 : static_cast<int>(found - exemplars.begin());
+    };
+    return choice(std::move(name), std::move(label), std::move(tip), exemplars, at,
+                  [&value, exemplars](int i) { value = exemplars[i]; });
   };
   return {choice(
               "keep", "Keep", "which side of a cut stays", {"both", "left", "right"}, [&s] { return int(s.keep); },
@@ -79,8 +83,8 @@ std::vector<Setting> setting_table(Settings& s) {
           choice(
               "type", "Type", "how the texture looks from different sides, and along how many axes it changes", types,
               [&s] { return int(s.type); }, [&s](int i) { s.type = TextureType(i); }),
-          choice("exemplar", "Exemplar", "the material", exemplars, exemplar_at,
-                 [&s, exemplars](int i) { s.exemplar = exemplars[i]; }),
+          exemplar("exemplar", "Exemplar", "the material", s.exemplar),
+          exemplar("thing", "Thing", "what the paste tool pastes", s.thing),
           number("scale", "Scale (mm)", "millimetres per texture width, for types that do not follow depth", 0.01,
                  10000, s.scale),
           toggle("lit", "Light", "off: the material's colours alone", s.lit),

@@ -20,7 +20,8 @@ struct Settings {
   double depth = 0; ///< what depth tools draw
   TextureType type = TextureType::tensor_2b;
   std::string exemplar = "kiwi";
-  double scale = 10; ///< mm per texture width
+  std::string thing = "almond"; ///< what is pasted by hand
+  double scale = 10;            ///< mm per texture width
   // display
   bool lit = true, filtered = true, strokes = true;
   double relief = 1; ///< displacement's scale

@@ -97,7 +97,10 @@ void Workbench::handle_mouse(const Event& event) {
     break;
   }
   case Event::Kind::wheel:
-    camera_.zoom(std::pow(1.15, event.amount), event.at);
+    if (held_ == Button::left && !panning_)
+      tool_->wheel(*this, event.amount);
+    else
+      camera_.zoom(std::pow(1.15, event.amount), event.at);
     break;
   case Event::Kind::double_click:
     if (const auto there = hit(event.at)) camera_.center_on(there->world);

@@ -18,6 +18,7 @@ public:
   virtual void press(Workbench&, const Event&) {}
   virtual void drag(Workbench&, const Event&) {} ///< between press and release
   virtual void release(Workbench&, const Event&) {}
+  virtual void wheel(Workbench&, double /*notches*/) {} ///< between press and release
   /// Lines that show the gesture, in screen coordinates.
   virtual std::vector<std::vector<Vec2d>> lines(const Workbench&) const { return {}; }
 };

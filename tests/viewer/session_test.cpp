@@ -57,10 +57,11 @@ protected:
 TEST_P(Sessions, LeavesWhatItShould) {
   const std::string name = GetParam();
   const std::map<std::string, std::size_t> pieces = {
-      {"look", 1},        {"views", 1},   {"stroke", 2},  {"stroke_left", 1}, {"stroke_right", 1}, {"one_piece", 3},
-      {"plane_drawn", 2}, {"plane_x", 2}, {"plane_y", 2}, {"plane_z", 2},     {"scoop", 2},        {"punch", 2},
-      {"corer", 2},       {"peel", 2},    {"move", 2},    {"join", 1},        {"arrange", 2},      {"history", 4},
-      {"whole_again", 1}, {"display", 1}, {"design", 2},  {"paint", 1},       {"face", 1}};
+      {"look", 1},      {"views", 1},       {"stroke", 2},  {"stroke_left", 1}, {"stroke_right", 1},
+      {"one_piece", 3}, {"plane_drawn", 2}, {"plane_x", 2}, {"plane_y", 2},     {"plane_z", 2},
+      {"scoop", 2},     {"punch", 2},       {"corer", 2},   {"peel", 2},        {"move", 2},
+      {"join", 1},      {"arrange", 2},     {"history", 4}, {"whole_again", 1}, {"display", 1},
+      {"design", 2},    {"paint", 1},       {"paste", 1},   {"scale", 1},       {"face", 1}};
   const Played p = played(name);
   if (const auto expected = pieces.find(name); expected != pieces.end()) {
     EXPECT_EQ(p.pieces, expected->second);
@@ -83,6 +84,16 @@ TEST_P(Sessions, LeavesWhatItShould) {
   if (name == "face") {
     EXPECT_TRUE(p.recipe.solids.empty()); // taken back
   }
+  if (name == "paste") {
+    ASSERT_EQ(p.recipe.solids.at(0).pastes.size(), 2u);
+    EXPECT_FALSE(p.recipe.solids[0].pastes[0].thing.mask); // an almond says itself where it is
+    EXPECT_TRUE(p.recipe.solids[0].pastes[1].thing.mask);
+    EXPECT_GT(p.recipe.solids[0].pastes[0].options.size, 5);
+  }
+  if (name == "scale") {
+    ASSERT_EQ(p.recipe.solids.at(0).local_scale.size(), 2u);
+    EXPECT_LT(p.recipe.solids[0].local_scale[0].factor, p.recipe.solids[0].local_scale[1].factor);
+  }
   if (name == "paint") {
     ASSERT_EQ(p.recipe.solids.size(), 1u);
     EXPECT_EQ(p.recipe.solids[0].exemplar.procedural, "sponge");
@@ -92,7 +103,7 @@ INSTANTIATE_TEST_SUITE_P(All, Sessions,
                          ::testing::Values("look", "views", "stroke", "stroke_left", "stroke_right", "one_piece",
                                            "plane_drawn", "plane_x", "plane_y", "plane_z", "scoop", "punch", "corer",
                                            "peel", "move", "join", "arrange", "history", "whole_again", "save",
-                                           "stop", "display", "design", "paint", "face"),
+                                           "stop", "display", "design", "paint", "face", "paste", "scale"),
                          [](const auto& info) { return std::string(info.param); });
 
 /// From a bare mesh to a filled kiwi in at most 12 gestures; then cut, all undone, all redone: the same bytes.
