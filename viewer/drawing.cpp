@@ -89,6 +89,15 @@ struct BufferTexture {
   }
 };
 
+/// Rows: right, up, towards the eye.
+Mat3d camera_axes(const View& view) {
+  Mat3d axes;
+  axes.row(0) = view.right().transpose();
+  axes.row(1) = view.upward().transpose();
+  axes.row(2) = -view.forward().transpose();
+  return axes;
+}
+
 Eigen::Matrix4d matrix_of(const Rigid& placement) {
   Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
   m.topLeftCorner<3, 3>() = placement.rotation;
@@ -98,16 +107,22 @@ Eigen::Matrix4d matrix_of(const Rigid& placement) {
 
 } // namespace
 
-Eigen::Matrix4d clip_matrix(const View& view, double aspect, const Box& bounds) {
-  const Vec3d forward = view.forward(), right = view.right(), up = view.upward();
-  Eigen::Matrix4d camera = Eigen::Matrix4d::Identity();
-  camera.block<1, 3>(0, 0) = right.transpose();
-  camera.block<1, 3>(1, 0) = up.transpose();
-  camera.block<1, 3>(2, 0) = -forward.transpose();
-  camera.topRightCorner<3, 1>() = -(camera.topLeftCorner<3, 3>() * view.eye);
+DepthRange depth_range(const View& view, const Box& bounds) {
   const double radius = std::max(0.5 * bounds.diagonal(), 1e-6) * 1.01;
-  const double middle = bounds.empty() ? 1 : (bounds.center() - view.eye).dot(forward);
-  double far = middle + radius, near = middle - radius;
+  const double middle = bounds.empty() ? 1 : (bounds.center() - view.eye).dot(view.forward());
+  DepthRange range{middle - radius, middle + radius};
+  if (!view.orthographic()) {
+    range.far = std::max(range.far, 1e-3 * radius);
+    range.near = std::max(range.near, 1e-4 * range.far);
+  }
+  return range;
+}
+
+Eigen::Matrix4d clip_matrix(const View& view, double aspect, const DepthRange& range) {
+  Eigen::Matrix4d camera = Eigen::Matrix4d::Identity();
+  camera.topLeftCorner<3, 3>() = camera_axes(view);
+  camera.topRightCorner<3, 1>() = -(camera.topLeftCorner<3, 3>() * view.eye);
+  const auto [near, far] = range;
   Eigen::Matrix4d projection = Eigen::Matrix4d::Zero();
   if (view.orthographic()) {
     projection(0, 0) = 2 / (view.height * aspect);
@@ -116,8 +131,6 @@ Eigen::Matrix4d clip_matrix(const View& view, double aspect, const Box& bounds) 
     projection(2, 3) = -(far + near) / (far - near);
     projection(3, 3) = 1;
   } else {
-    far = std::max(far, 1e-3 * radius);
-    near = std::max(near, 1e-4 * far);
     const double focal = 1 / std::tan(0.5 * view.vertical_angle);
     projection(0, 0) = focal / aspect;
     projection(1, 1) = focal;
@@ -129,7 +142,10 @@ Eigen::Matrix4d clip_matrix(const View& view, double aspect, const Box& bounds) 
 }
 
 struct Drawing::Parts {
-  GLuint program = 0;
+  GLuint program = 0, depth_program = 0;
+  Texture depth; ///< of the view, for the occlusion
+  Framebuffer depth_frame;
+  std::array<int, 2> depth_size{0, 0};
   BufferTexture table, texels, alphas;
   std::uint32_t layers = 0;
   VertexArray array;
@@ -139,14 +155,58 @@ struct Drawing::Parts {
 
   ~Parts() {
     if (program) glDeleteProgram(program);
+    if (depth_program) glDeleteProgram(depth_program);
   }
-  GLint at(const char* name) const { return glGetUniformLocation(program, name); }
+  GLint at(const char* name) const {
+    GLint in_use = 0;
+    glGetIntegerv(GL_CURRENT_PROGRAM, &in_use);
+    return glGetUniformLocation(static_cast<GLuint>(in_use), name);
+  }
   void set(const char* name, const Vec3d& v) const {
     glUniform3f(at(name), float(v.x()), float(v.y()), float(v.z()));
   }
   void set(const char* name, const Eigen::Matrix4d& m) const {
     const Eigen::Matrix4f f = m.cast<float>();
     glUniformMatrix4fv(at(name), 1, GL_FALSE, f.data());
+  }
+
+  /// Depths alone, of half as many pixels each way; into `depth`.
+  void draw_depth(const Eigen::Matrix4d& to_clip, int width, int height) {
+    GLint before = 0;
+    glGetIntegerv(GL_FRAMEBUFFER_BINDING, &before);
+    const std::array<int, 2> size{std::max(1, width / 2), std::max(1, height / 2)};
+    if (size != depth_size) {
+      glGenTextures(1, depth.address());
+      glBindTexture(GL_TEXTURE_2D, depth);
+      glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, size[0], size[1], 0, GL_DEPTH_COMPONENT, GL_FLOAT,
+                   nullptr);
+      for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+        glTexParameteri(GL_TEXTURE_2D, filter, GL_NEAREST);
+      for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+        glTexParameteri(GL_TEXTURE_2D, axis, GL_CLAMP_TO_EDGE);
+      glGenFramebuffers(1, depth_frame.address());
+      glBindFramebuffer(GL_FRAMEBUFFER, depth_frame);
+      glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth, 0);
+      glDrawBuffer(GL_NONE);
+      glReadBuffer(GL_NONE);
+      depth_size = size;
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, depth_frame);
+    glViewport(0, 0, size[0], size[1]);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    glUseProgram(depth_program);
+    set("to_clip", to_clip);
+    glBindVertexArray(array);
+    draw_pieces(0xffffffffu);
+    glBindFramebuffer(GL_FRAMEBUFFER, before);
+  }
+
+  void draw_pieces(std::uint32_t highlighted) const {
+    for (const DrawnPiece& one : piece) {
+      set("to_world", matrix_of(one.placement));
+      glUniform1f(at("highlight"), one.piece == highlighted ? 0.12f : 0.0f);
+      glDrawArrays(GL_TRIANGLES, static_cast<GLint>(one.begin), static_cast<GLsizei>(one.end - one.begin));
+    }
   }
 
   Box world_bounds() const {
@@ -167,6 +227,7 @@ Drawing::Drawing() : parts_(std::make_unique<Parts>()) {
     throw SolverFailure(fmt::format("pith draws with OpenGL 3.3 or later; this is {}",
                                     reinterpret_cast<const char*>(glGetString(GL_VERSION))));
   parts_->program = linked(surface_vertex_shader, surface_fragment_shader);
+  parts_->depth_program = linked(surface_vertex_shader, depth_fragment_shader);
   set_material({});
   set_surface({});
 }
@@ -227,10 +288,16 @@ void Drawing::set_placement(std::uint32_t piece, const Rigid& placement) {
 
 void Drawing::draw(const View& view, int width, int height, const DrawOptions& options) {
   Parts& p = *parts_;
-  glViewport(0, 0, width, height);
   glEnable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
   glDisable(GL_BLEND);
+  const Box bounds = p.world_bounds();
+  const DepthRange range = depth_range(view, bounds);
+  const Eigen::Matrix4d to_clip = clip_matrix(view, double(width) / height, range);
+  const bool occluded = options.lit && options.occlusion;
+  if (occluded) p.draw_depth(to_clip, width, height);
+
+  glViewport(0, 0, width, height);
   if (options.transparent)
     glClearColor(0, 0, 0, 0);
   else
@@ -244,7 +311,18 @@ void Drawing::draw(const View& view, int width, int height, const DrawOptions& o
     glBindTexture(GL_TEXTURE_BUFFER, buffer->texture);
     glUniform1i(p.at(name), unit++);
   }
-  p.set("to_clip", clip_matrix(view, double(width) / height, p.world_bounds()));
+  glActiveTexture(GL_TEXTURE0 + unit);
+  glBindTexture(GL_TEXTURE_2D, occluded ? p.depth : 0);
+  glUniform1i(p.at("depths"), unit);
+  glUniform1i(p.at("occluded"), occluded);
+  glUniform2f(p.at("pixels"), float(width), float(height));
+  glUniform2f(p.at("range"), float(range.near), float(range.far));
+  const double seen = view.orthographic() ? view.height : 2 * std::tan(0.5 * view.vertical_angle);
+  glUniform1f(p.at("pixel_mm"), float(seen / height));
+  const Eigen::Matrix3f axes = camera_axes(view).cast<float>();
+  glUniformMatrix3fv(p.at("camera"), 1, GL_FALSE, axes.data());
+  glUniform1f(p.at("reach"), float(0.12 * bounds.diagonal()));
+  p.set("to_clip", to_clip);
   glUniform1i(p.at("layers"), static_cast<int>(p.layers));
   glUniform1i(p.at("filtered"), options.filtered);
   glUniform1i(p.at("lit"), options.lit);
@@ -254,11 +332,7 @@ void Drawing::draw(const View& view, int width, int height, const DrawOptions& o
   p.set("key_light", (0.75 * view.upward() - 0.5 * view.right() - 0.65 * view.forward()).normalized());
   p.set("uncovered", options.uncovered);
   glBindVertexArray(p.array);
-  for (const DrawnPiece& piece : p.piece) {
-    p.set("to_world", matrix_of(piece.placement));
-    glUniform1f(p.at("highlight"), piece.piece == options.highlighted ? 0.12f : 0.0f);
-    glDrawArrays(GL_TRIANGLES, static_cast<GLint>(piece.begin), static_cast<GLsizei>(piece.end - piece.begin));
-  }
+  p.draw_pieces(options.highlighted);
   glBindVertexArray(0);
   glActiveTexture(GL_TEXTURE0);
   require_no_error("draw");

@@ -14,6 +14,7 @@ namespace pith {
 struct DrawOptions {
   bool lit = true;          ///< false: the material's colours alone
   bool filtered = true;     ///< coarser texels where texels are smaller than a pixel
+  bool occlusion = true;    ///< crevices are darker; only where lit
   bool transparent = false; ///< no background
   Vec3d uncovered{0.5, 0.5, 0.5};
   std::uint32_t highlighted = 0xffffffffu; ///< a piece
@@ -53,7 +54,13 @@ private:
   std::unique_ptr<Parts> parts_;
 };
 
-/// From world to clip space; the near and far planes enclose `bounds` (world).
-Eigen::Matrix4d clip_matrix(const View& view, double aspect, const Box& bounds);
+/// Distances from the eye along the direction of sight between which `bounds` (world) lie.
+struct DepthRange {
+  double near = 0, far = 1;
+};
+DepthRange depth_range(const View& view, const Box& bounds);
+
+/// From world to clip space.
+Eigen::Matrix4d clip_matrix(const View& view, double aspect, const DepthRange& range);
 
 } // namespace pith

@@ -20,6 +20,7 @@ DrawOptions Screen::follow(int width, int height) {
   for (const DrawnPiece& piece : surface.piece) drawing_.set_placement(piece.piece, piece.placement);
   DrawOptions options;
   options.lit = bench_.settings().lit;
+  options.occlusion = bench_.settings().occlusion;
   options.filtered = bench_.settings().filtered;
   return options;
 }

@@ -88,6 +88,7 @@ std::vector<Setting> setting_table(Settings& s) {
           number("scale", "Scale (mm)", "millimetres per texture width, for types that do not follow depth", 0.01,
                  10000, s.scale),
           toggle("lit", "Light", "off: the material's colours alone", s.lit),
+          toggle("occlusion", "Shade crevices", "less light where less of the sky is seen", s.occlusion),
           toggle("filtered", "Filter", "coarser texels where they are smaller than a pixel", s.filtered),
           toggle("strokes", "Strokes", "show what was drawn", s.strokes),
           number("relief", "Relief", "how far the skin's relief stands out", 0, 10, s.relief)};

@@ -23,7 +23,7 @@ struct Settings {
   std::string thing = "almond"; ///< what is pasted by hand
   double scale = 10;            ///< mm per texture width
   // display
-  bool lit = true, filtered = true, strokes = true;
+  bool lit = true, occlusion = true, filtered = true, strokes = true;
   double relief = 1; ///< displacement's scale
 };
 

@@ -47,6 +47,13 @@ uniform vec3 key_light;  // unit, towards it
 uniform vec3 up;
 uniform vec3 uncovered;  // linear, where nothing covers
 uniform float highlight; // of the piece under the mouse
+uniform bool occluded;   // less of the sky is seen from crevices
+uniform sampler2D depths; // of the same view
+uniform vec2 pixels;     // of the picture
+uniform vec2 range;      // of depth, mm
+uniform float pixel_mm;  // a pixel's height; where not orthographic, at 1 mm from the eye
+uniform mat3 camera;     // rows: right, up, towards the eye
+uniform float reach;     // mm: what is farther away occludes nothing
 out vec4 pixel;
 
 const uint no_row = 0xffffffffu;
@@ -350,6 +357,30 @@ vec4 material() {
   return vec4(mix(color, uncovered, through), 1.0 - through);
 }
 
+float distance_of(float depth) {
+  return orthographic ? mix(range.x, range.y, depth) : range.x * range.y / mix(range.y, range.x, depth);
+}
+
+// The share of the sky that is seen, from the depths around (after McGuire, Mara, Luebke 2012, section 2).
+float sky_seen(vec3 normal) {
+  const int samples = 14;
+  vec3 n = camera * normal;
+  float here = distance_of(gl_FragCoord.z), mm = orthographic ? pixel_mm : pixel_mm * here;
+  float radius = min(reach / mm, 0.25 * pixels.y);
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  float turn = float((3 * (at.x ^ at.y) + at.x * at.y) & 15) * 0.3927;
+  float hidden = 0.0;
+  for (int i = 0; i < samples; ++i) {
+    float part = (float(i) + 0.5) / float(samples), angle = turn + 7.0 * 6.28319 * part;
+    vec2 offset = radius * part * vec2(cos(angle), sin(angle));
+    float depth = texture(depths, (gl_FragCoord.xy + offset) / pixels).r;
+    vec3 v = vec3(offset * mm, here - distance_of(depth));
+    float far = dot(v, v) / (reach * reach);
+    hidden += max(1.0 - far, 0.0) * max(dot(v, n) * inversesqrt(dot(v, v) + 1e-12) - 0.12, 0.0);
+  }
+  return clamp(1.0 - 2.4 * hidden / float(samples), 0.0, 1.0);
+}
+
 vec3 encoded(vec3 linear) {
   vec3 c = clamp(linear, 0.0, 1.0);
   return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
@@ -363,12 +394,17 @@ void main() {
     float sky = 0.5 + 0.5 * dot(n, up);
     float key = max(dot(n, key_light), 0.0), soft = max(0.35 + 0.65 * dot(n, key_light), 0.0);
     vec3 light = mix(vec3(0.44, 0.42, 0.40), vec3(0.66, 0.68, 0.71), sky) + vec3(0.40, 0.39, 0.37) * mix(soft, key, 0.6);
+    if (occluded) light *= mix(0.2, 1.0, sky_seen(n));
     float shine = pow(max(dot(n, normalize(key_light + to_eye)), 0.0), 48.0);
     color = color * light + 0.06 * shine;
   }
   color = mix(color, vec3(1.0, 0.75, 0.25), highlight);
   pixel = vec4(encoded(color), 1.0);
 }
+)";
+
+const char* const depth_fragment_shader = R"(#version 330 core
+void main() {}
 )";
 
 } // namespace pith

@@ -5,5 +5,6 @@ namespace pith {
 
 extern const char* const surface_vertex_shader;
 extern const char* const surface_fragment_shader;
+extern const char* const depth_fragment_shader; ///< nothing but depth, for the occlusion
 
 } // namespace pith

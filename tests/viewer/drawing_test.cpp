@@ -90,6 +90,42 @@ TEST_P(DrawnMethods, PixelsAreMaterialAt) {
 }
 INSTANTIATE_TEST_SUITE_P(All, DrawnMethods, ::testing::Range(0, 5));
 
+/// A cube in two halves, one farther back: it is darker in the step between them, and nowhere else.
+TEST(Drawing, CrevicesAreDarker) {
+  const Root root(testing::masked_images());
+  Pieces pieces = whole_piece(root.model().mesh);
+  const auto plane = level_set_of(PlaneCut{.normal = {1, 0, 0}, .offset = 0.9});
+  cut(pieces, root.model().mesh, root.model().boundary, *plane);
+  pieces.piece[1].placement.translation = {0, 0, -0.8};
+  const OffscreenContext context;
+  Drawing drawing;
+  drawing.set_material(material_tables(root));
+  drawing.set_surface(
+      drawn_surface(root, pieces, facet_corner_normals(root.model().mesh, root.model().boundary, 0.6), {.scale = 0}));
+  for (const double angle : {0.5, 0.0}) { // in perspective and without
+    const View view{.eye = {2.2, 1, 9}, .target = {1.1, 1, 1}, .vertical_angle = angle, .height = 4};
+    const Image bright = drawing.picture(view, 200, 200, {.occlusion = false, .transparent = true});
+    const Image shaded = drawing.picture(view, 200, 200, {.transparent = true});
+    double faces = 0, crevice = 1;
+    int count = 0;
+    for (int i = 0; i < 200 * 200; ++i) {
+      const float* a = bright.pixel.data() + 4 * i;
+      const float* b = shaded.pixel.data() + 4 * i;
+      EXPECT_EQ(a[3], b[3]);
+      if (a[3] < 1) continue;
+      const double before = a[0] + a[1] + a[2], after = b[0] + b[1] + b[2];
+      EXPECT_LE(after, before + 0.02);
+      crevice = std::min(crevice, after / before);
+      faces += after / before;
+      ++count;
+    }
+    EXPECT_GT(count, 5000);
+    EXPECT_LT(crevice, 0.85);
+    EXPECT_GT(faces / count, 0.95);
+    EXPECT_LT(faces / count, 0.999);
+  }
+}
+
 TEST(Drawing, KiwiAcrossIsMaterialAt) {
   const std::filesystem::path source = PITH_SOURCE_DIR;
   Recipe recipe = read_recipe(source / "data/recipes/table1/kiwi.json");
