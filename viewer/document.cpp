@@ -95,6 +95,7 @@ void Document::open(const Recovered& recovered) {
   keep_recovery();
   std::error_code ignored;
   fs::remove(recovered.path, ignored);
+  fs::remove(fs::path(recovered.path).replace_extension(".lock"), ignored);
   update();
 }
 

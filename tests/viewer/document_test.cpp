@@ -148,6 +148,8 @@ TEST_F(Documents, KilledWorkIsOfferedBack) {
   ASSERT_EQ(document.wait(), "");
   EXPECT_EQ(recipe_text(document.recipe()), expected);
   EXPECT_TRUE(recoverable(options.recovery).empty()); // it is this document's now
+  const fs::directory_iterator files(options.recovery);
+  EXPECT_EQ(std::distance(begin(files), end(files)), 2); // its own file and lock, nothing of the dead one's
 }
 
 } // namespace
