@@ -58,11 +58,11 @@ void fill(Workbench& bench) {
 
 std::vector<Command> all_commands() {
   std::vector<Command> list = {
-      with_text("open", "File", "Open…", "Ctrl+O", "a recipe, a model or a surface",
+      with_text("open", "File", "Open...", "Ctrl+O", "a recipe, a model or a surface",
                 [](Workbench& bench, const std::string& path) { bench.document().open(path); }),
       plain("save", "File", "Save", "Ctrl+S", "to the document's own file", save, has_document),
       with_text(
-          "save as", "File", "Save as…", "Ctrl+Shift+S", "a recipe (.json), or a model with its recipe (.pith)",
+          "save as", "File", "Save as...", "Ctrl+Shift+S", "a recipe (.json), or a model with its recipe (.pith)",
           [](Workbench& bench, const std::string& path) {
             bench.document().save(path);
             bench.say("saved " + path);
@@ -148,7 +148,7 @@ std::vector<Command> all_commands() {
   for (int k = 0; k < 3; ++k)
     for (const int sign : {1, -1})
       list.push_back(plain(std::string("view ") + (sign > 0 ? "+" : "-") + axis[k], "View",
-                           std::string("From ") + (sign > 0 ? "+" : "−") + axis[k],
+                           std::string("From ") + (sign > 0 ? "+" : "-") + axis[k],
                            (sign > 0 ? "" : "Shift+") + std::string(1, static_cast<char>('X' + k)), "along an axis",
                            [k, sign](Workbench& bench) { bench.home(sign * Vec3d::Unit(k)); }));
   for (const ToolEntry& tool : tool_table())

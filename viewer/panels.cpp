@@ -48,6 +48,7 @@ Panels::Panels(void* window, float scale) : parts_(std::make_unique<Parts>()) {
   IMGUI_CHECKVERSION();
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
+  io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard; // Alt, arrows, Space, Enter: everything without a mouse
   io.IniFilename = nullptr; // the layout is ours, and nothing is written where the user stands
   ImGui::StyleColorsLight();
   ImGui::GetStyle().ScaleAllSizes(scale);
@@ -67,7 +68,9 @@ Panels::~Panels() {
 }
 
 bool Panels::wants_mouse() const { return ImGui::GetIO().WantCaptureMouse; }
-bool Panels::wants_keys() const { return ImGui::GetIO().WantTextInput; }
+bool Panels::wants_keys() const {
+  return ImGui::GetIO().WantTextInput || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
+}
 void Panels::toggle_help() { parts_->help = !parts_->help; }
 const Recovered* Panels::taken_up() const { return parts_->taken ? &*parts_->taken : nullptr; }
 

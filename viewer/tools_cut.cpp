@@ -14,7 +14,7 @@ class Drawn : public Tool {
 public:
   void press(Workbench&, const Event& event) override { point_ = {event.at}; }
   void drag(Workbench&, const Event& event) override {
-    if ((event.at - point_.back()).norm() >= shortest) point_.push_back(event.at);
+    if (!point_.empty()) drag_to(event.at);
   }
   std::vector<std::vector<Vec2d>> lines(const Workbench&) const override {
     if (point_.size() < 2) return {};

@@ -8,6 +8,7 @@
 #include <GLFW/glfw3.h>
 #include <algorithm>
 #include <fmt/format.h>
+#include <utility>
 
 namespace pith {
 namespace fs = std::filesystem;
@@ -70,6 +71,8 @@ public:
         glfwWaitEventsTimeout(0.5);
       busy_frames_ = std::max(0, busy_frames_ - 1);
       bench.poll();
+      waited_ |= was_building_ && !bench.document().building();
+      was_building_ = bench.document().building();
       int width = 0, height = 0;
       glfwGetFramebufferSize(window_, &width, &height);
       if (width > 0 && height > 0) {
@@ -101,6 +104,7 @@ private:
 
   void handle(const Event& event) {
     busy_frames_ = 3;
+    const bool building = bench_->document().building();
     if (event.kind == Event::Kind::picture) {
       int width = 0, height = 0;
       glfwGetFramebufferSize(window_, &width, &height);
@@ -113,10 +117,12 @@ private:
     } else {
       bench_->handle(event);
     }
+    was_building_ |= !building && bench_->document().building(); // it may end before the next frame
     if (options_.record.empty()) return;
     int width = 0, height = 0;
     glfwGetWindowSize(window_, &width, &height);
     session_.size = {width, height};
+    if (std::exchange(waited_, false)) session_.event.push_back({.kind = Event::Kind::wait}); // as the user did
     session_.event.push_back(event);
     if (event.kind != Event::Kind::drag) {
       try {
@@ -215,6 +221,7 @@ private:
   Vec2d at_{0, 0}, pressed_at_{0, 0};
   double pressed_ = -1;
   bool held_ = false, took_up_ = false;
+  bool was_building_ = false, waited_ = false; ///< what was made has ended since the last event
   int busy_frames_ = 3;
 };
 

@@ -16,6 +16,8 @@ void Workbench::choose_tool(const std::string& name) {
   for (const ToolEntry& entry : tool_table())
     if (entry.name == name) {
       end_preview();
+      held_.reset(); // a gesture that was begun with another tool is over
+      panning_ = false;
       tool_ = entry.make();
       tool_name_ = name;
       return;

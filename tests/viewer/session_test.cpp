@@ -215,5 +215,25 @@ TEST(Workbenches, WhatFailsBecomesAMessageAndTheWorkGoesOn) {
   EXPECT_GE(bench.pieces()->piece.size(), 1u);
 }
 
+TEST(Workbenches, AToolChosenInTheMiddleOfAGestureEndsIt) {
+  Workbench bench;
+  bench.handle(
+      {.kind = Event::Kind::command, .name = "open", .text = (source / "data/recipes/table1/kiwi.json").string()});
+  bench.handle({.kind = Event::Kind::wait});
+  const std::string before = recipe_text(bench.document().recipe());
+  for (const ToolEntry& first : tool_table())
+    for (const ToolEntry& second : tool_table()) {
+      bench.handle({.kind = Event::Kind::command, .name = "tool " + first.name});
+      bench.handle({.kind = Event::Kind::press, .at = {0, 0}});
+      bench.handle({.kind = Event::Kind::drag, .at = {0.02, 0.01}});
+      bench.handle({.kind = Event::Kind::command, .name = "tool " + second.name});
+      for (const double u : {0.1, 0.2, 0.3}) bench.handle({.kind = Event::Kind::drag, .at = {u, 0.05}});
+      bench.handle({.kind = Event::Kind::wheel, .at = {0, 0}, .amount = 0});
+      bench.tool().lines(bench);
+      bench.handle({.kind = Event::Kind::release, .at = {0.3, 0.05}});
+    }
+  EXPECT_EQ(recipe_text(bench.document().recipe()), before);
+}
+
 } // namespace
 } // namespace pith
