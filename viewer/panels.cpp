@@ -19,7 +19,7 @@ struct Panels::Parts {
   std::string file_command, path;
   bool open_file_dialog = false;
   // leave to lose work
-  std::optional<Event> risky;
+  std::optional<Event> risky, after_save;
   bool open_risk = false;
   // what a crash left
   std::vector<Recovered> left;
@@ -35,6 +35,10 @@ namespace {
 
 /// Does it lose what is not saved?
 bool risks_work(const std::string& command) { return command == "open" || command == "quit"; }
+
+void add(std::vector<Event>& out, const std::optional<Event>& event) {
+  if (event) out.push_back(*event);
+}
 
 void tip(const std::string& text) {
   if (!text.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text.c_str());
@@ -79,22 +83,25 @@ void Panels::offer(std::vector<Recovered> left) {
   parts_->open_offer = !parts_->left.empty();
 }
 
-void Panels::ask(const Workbench& bench, const Command& command) {
-  if (command.takes_text && command.name != "paste view") {
-    parts_->file_command = command.name;
-    parts_->path = command.name == "save as" && !bench.document().file().empty() ? bench.document().file().string()
-                                                                                 : fs::current_path().string() + "/";
-    parts_->open_file_dialog = true;
-  } else if (command.name == "paste view") {
+std::optional<Event> Panels::ask(const Workbench& bench, const Command& command) {
+  Event event{.kind = Event::Kind::command, .name = command.name};
+  if (command.name == "paste view") {
     const char* text = ImGui::GetClipboardText();
-    parts_->choose(command.name, text ? text : "");
-  } else if (risks_work(command.name) && bench.document().modified() && !bench.document().empty()) {
-    parts_->risky = Event{.kind = Event::Kind::command, .name = command.name};
+    event.text = text ? text : "";
+  } else if (command.takes_text) {
+    const fs::path& file = bench.document().file();
+    parts_->file_command = command.name;
+    parts_->path = command.name == "save as" && !file.empty() ? file.string() : fs::current_path().string() + "/";
+    parts_->open_file_dialog = true;
+    return {};
+  } else if (risks_work(command.name) && !bench.document().empty() && bench.document().modified()) {
+    parts_->risky = event;
     parts_->open_risk = true;
-  } else {
-    parts_->choose(command.name);
-    if (command.name == "copy view") ImGui::SetClipboardText(Camera(bench.view()).text().c_str());
+    return {};
+  } else if (command.name == "copy view") {
+    ImGui::SetClipboardText(Camera(bench.view()).text().c_str());
   }
+  return event;
 }
 
 void Panels::ask_to_open(const Workbench& bench, const std::string& path) {
@@ -109,7 +116,7 @@ void Panels::ask_to_open(const Workbench& bench, const std::string& path) {
 
 namespace {
 
-void menu_bar(Panels& panels, Workbench& bench, float& height) {
+void menu_bar(Panels& panels, Workbench& bench, float& height, std::vector<Event>& out) {
   if (!ImGui::BeginMainMenuBar()) return;
   const auto& table = command_table();
   std::vector<std::string> menus;
@@ -122,7 +129,7 @@ void menu_bar(Panels& panels, Workbench& bench, float& height) {
         const bool on = !command.enabled || command.enabled(bench);
         if (ImGui::MenuItem(command.label.c_str(), command.shortcut.c_str(),
                             command.name == "tool " + bench.tool_name(), on))
-          panels.ask(bench, command);
+          add(out, panels.ask(bench, command));
         tip(command.tip);
       }
       ImGui::EndMenu();
@@ -176,7 +183,7 @@ void side_panel(Panels& panels, Workbench& bench, float top, float height, std::
     if (column++ % 2) ImGui::SameLine();
     const bool chosen = command.name == "tool " + bench.tool_name();
     if (chosen) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
-    if (ImGui::Button(command.label.c_str(), {8.2f * unit, 0})) panels.ask(bench, command);
+    if (ImGui::Button(command.label.c_str(), {8.2f * unit, 0})) add(out, panels.ask(bench, command));
     if (chosen) ImGui::PopStyleColor();
     tip(command.tip + (command.shortcut.empty() ? "" : " (" + command.shortcut + ")"));
   }
@@ -189,7 +196,7 @@ void side_panel(Panels& panels, Workbench& bench, float top, float height, std::
     const auto button = [&](const char* name) {
       for (const Command& command : command_table())
         if (command.name == name) {
-          if (ImGui::Button(command.label.c_str(), {8.2f * unit, 0})) panels.ask(bench, command);
+          if (ImGui::Button(command.label.c_str(), {8.2f * unit, 0})) add(out, panels.ask(bench, command));
           tip(command.tip);
         }
     };
@@ -292,9 +299,11 @@ std::vector<Event> Panels::build(Workbench& bench, int width, int height) {
   io.DisplayFramebufferScale = {1, 1};
   if (!p.has_window) io.DeltaTime = 1 / 60.0f;
   ImGui::NewFrame();
+  if (const auto event = std::exchange(p.after_save, std::nullopt); event && !bench.document().modified())
+    p.out.push_back(*event); // where saving failed the message says so, and nothing goes on
   overlay(bench, width, height);
   float top = 0;
-  menu_bar(*this, bench, top);
+  menu_bar(*this, bench, top, p.out);
   side_panel(*this, bench, top, float(height), p.out);
   status_line(bench, width, height);
   if (p.help) help_window(p.help);
@@ -341,7 +350,7 @@ std::vector<Event> Panels::build(Workbench& bench, int width, int height) {
     const bool has_file = !bench.document().file().empty();
     if (has_file && ImGui::Button("Save, then go on")) {
       p.choose("save");
-      p.out.push_back(*p.risky);
+      p.after_save = p.risky;
       ImGui::CloseCurrentPopup();
     }
     if (has_file) ImGui::SameLine();

@@ -23,9 +23,9 @@ public:
   bool wants_mouse() const;
   bool wants_keys() const;
 
-  /// Asks for a file where a command needs one, for leave to lose unsaved work, or nothing; then the command comes
-  /// out of a later frame().
-  void ask(const Workbench& bench, const Command& command);
+  /// What a command says now; none where a dialog asks first, for a file or for leave to lose unsaved work. Then it
+  /// comes out of a later build().
+  std::optional<Event> ask(const Workbench& bench, const Command& command);
   void ask_to_open(const Workbench& bench, const std::string& path); ///< a file was dropped
   void offer(std::vector<Recovered> left);                           ///< what a crash left behind
   const Recovered* taken_up() const; ///< the user chose to take this up; null: nothing, or not yet

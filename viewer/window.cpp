@@ -198,7 +198,8 @@ private:
   void command(const std::string& name) {
     busy_frames_ = 3;
     for (const Command& one : command_table())
-      if (one.name == name && bench_ && (!one.enabled || one.enabled(*bench_))) panels_->ask(*bench_, one);
+      if (one.name == name && bench_ && (!one.enabled || one.enabled(*bench_)))
+        if (const std::optional<Event> event = panels_->ask(*bench_, one)) handle(*event);
   }
 
   void title() {
