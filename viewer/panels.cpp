@@ -52,7 +52,6 @@ Panels::Panels(void* window, float scale) : parts_(std::make_unique<Parts>()) {
   IMGUI_CHECKVERSION();
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
-  io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard; // Alt, arrows, Space, Enter: everything without a mouse
   io.IniFilename = nullptr; // the layout is ours, and nothing is written where the user stands
   ImGui::StyleColorsLight();
   ImGui::GetStyle().ScaleAllSizes(scale);
@@ -61,7 +60,10 @@ Panels::Panels(void* window, float scale) : parts_(std::make_unique<Parts>()) {
   font.SizePixels = 13 * scale;
   io.Fonts->AddFontDefault(&font);
   parts_->has_window = window != nullptr;
-  if (window) ImGui_ImplGlfw_InitForOpenGL(static_cast<GLFWwindow*>(window), true);
+  if (window) {
+    io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard; // Alt, arrows, Space, Enter: everything without a mouse
+    ImGui_ImplGlfw_InitForOpenGL(static_cast<GLFWwindow*>(window), true);
+  }
   ImGui_ImplOpenGL3_Init("#version 330 core");
 }
 
