@@ -335,7 +335,7 @@ protected:
 
 TEST_F(CliEnd, CtrlCLeavesNothing) {
   const auto before = program.files();
-  for (const int milliseconds : {30, 400, 1200}) {
+  for (const int milliseconds : {150, 400, 1200}) {
     const Program::Process process = program.start({"make", slow, "-o", "kiwi.pith", "--no-cache", "--quiet"});
     std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
     ::kill(process.id, SIGINT);
