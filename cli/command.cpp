@@ -66,6 +66,16 @@ void Session::print(const Json& object) const {
   std::printf("%s\n", object.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
 }
 
+std::array<int, 2> size_of(const std::string& option, const std::string& text, int least, int most) {
+  std::array<int, 2> size{};
+  int end = 0;
+  const bool read =
+      std::sscanf(text.c_str(), "%5dx%5d%n", &size[0], &size[1], &end) == 2 && end == static_cast<int>(text.size());
+  if (!read || std::min(size[0], size[1]) < least || std::max(size[0], size[1]) > most)
+    throw CLI::ValidationError(option, "'" + text + "' is not WIDTHxHEIGHT, such as 800x600");
+  return size;
+}
+
 std::string extension_of(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   if (!extension.empty()) extension.erase(0, 1);

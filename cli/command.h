@@ -6,6 +6,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -108,6 +109,9 @@ std::string nearest_name(const std::string& word, const std::vector<std::string>
 
 /// "x,y,z" and the like: `count` finite numbers. Errors: CLI::ValidationError (wrong usage), naming the option.
 std::vector<double> numbers_of(const std::string& option, const std::string& text, std::size_t count);
+
+/// "WIDTHxHEIGHT", each from `least` to `most`. Errors: CLI::ValidationError (wrong usage), naming the option.
+std::array<int, 2> size_of(const std::string& option, const std::string& text, int least, int most);
 
 /// Refuses, in every option of the verb, an empty value, a number that is not finite, and a sign before a count.
 /// Errors of the parser: wrong usage, naming the option.

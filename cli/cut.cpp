@@ -134,7 +134,9 @@ void run(const CLI::App& app, const CutVerbOptions& options, const Session& sess
       MoveStep move;
       (explodes ? move.explode : move.drop) = *value;
       apply_move(file.pieces, mesh, locator, move, explodes ? "--explode" : "--drop");
-      if (recipe) recipe->moves.push_back(move);
+      if (!recipe) continue;
+      recipe->moves.push_back(move);
+      add_last_move(file.key, *recipe);
     }
   if (recipe) file.recipe = recipe_text(*recipe);
   session.stop_if_asked();

@@ -25,15 +25,6 @@ struct RenderVerbOptions {
   DisplaceOptions displacement;
 };
 
-std::array<int, 2> size_of(const std::string& text) {
-  int width = 0, height = 0, end = 0;
-  const bool read =
-      std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &end) == 2 && end == static_cast<int>(text.size());
-  if (!read || width < 1 || height < 1 || width > 32768 || height > 32768)
-    throw CLI::ValidationError("--size", "'" + text + "' is not WIDTHxHEIGHT, such as 800x600");
-  return {width, height};
-}
-
 /// Errors before long work: InvalidInput where the picture cannot fit into the memory of this computer.
 void require_memory(int width, int height) {
   // The film, and beside it the picture, its layers and what is encoded of them.
@@ -86,7 +77,7 @@ std::uint32_t least_samples(const Film& film) {
 void run(const CLI::App& app, const RenderVerbOptions& options, const Session& session) {
   const auto start = std::chrono::steady_clock::now();
   check_output(options.output, {"png", "exr", "jpg", "hdr", "tif"});
-  const auto [width, height] = size_of(options.size);
+  const auto [width, height] = size_of("--size", options.size, 1, 32768);
   require_memory(width, height);
   SceneFile scene_file;
   if (!options.scene.empty())

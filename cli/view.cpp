@@ -1,7 +1,7 @@
 // pith view [FILE] [--replay SESSION.json] [--screenshot OUT.png] [--record SESSION.json]
 #include "cli/command.h"
 #include "recipe/cache.h"
-#include "viewer/screen.h"
+#include "viewer/replay.h"
 #include "viewer/window.h"
 #include "volume/base/error.h"
 #include "volume/io/atomic_file.h"
@@ -14,16 +14,6 @@ struct ViewVerbOptions {
   std::string size;
   bool panels = false;
 };
-
-std::array<int, 2> size_of(const std::string& text) {
-  std::array<int, 2> size{};
-  int end = 0;
-  const bool read = std::sscanf(text.c_str(), "%5dx%5d%n", &size[0], &size[1], &end) == 2 &&
-                    end == static_cast<int>(text.size()) && size[0] >= 16 && size[1] >= 16 && size[0] <= 16384 &&
-                    size[1] <= 16384;
-  if (!read) throw CLI::ValidationError("--size", "'" + text + "' is not WIDTHxHEIGHT, such as 800x600");
-  return size;
-}
 
 } // namespace
 
@@ -42,7 +32,7 @@ Verb view_verb(CLI::App& program) {
             DocumentOptions document;
             document.build.cache = options->cache.empty() ? default_cache_folder() : options->cache;
             std::array<int, 2> size{0, 0};
-            if (!options->size.empty()) size = size_of(options->size);
+            if (!options->size.empty()) size = size_of("--size", options->size, 16, 16384);
             if (!options->session.empty() || !options->screenshot.empty()) {
               if (!options->screenshot.empty()) check_output(options->screenshot, {"png"});
               EventList events;

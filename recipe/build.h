@@ -63,6 +63,8 @@ struct BuildResult {
 /// After a cut was appended to a recipe (append_cut) and done by hand: brings the keys of a model file up to date, so
 /// that they are those of a build of the new recipe by this program.
 void add_last_cut(std::map<std::string, std::string>& keys, const Recipe& recipe);
+/// The same after a move was appended.
+void add_last_move(std::map<std::string, std::string>& keys, const Recipe& recipe);
 
 /// Builds recipes and remembers the results of their stages.
 class Builder {

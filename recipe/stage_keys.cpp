@@ -202,4 +202,16 @@ void add_last_cut(std::map<std::string, std::string>& keys, const Recipe& recipe
   keys["cut " + std::to_string(last)] = add(cut, recipe.cuts[last]).key().text();
 }
 
+void add_last_move(std::map<std::string, std::string>& keys, const Recipe& recipe) {
+  const std::size_t last = recipe.moves.size() - 1, cuts = recipe.cuts.size();
+  const std::string before = last > 0   ? "move " + std::to_string(last - 1)
+                             : cuts > 0 ? "cut " + std::to_string(cuts - 1)
+                                        : "refine";
+  const auto found = keys.find(before);
+  if (found == keys.end()) return; // a model that was not built from a recipe
+  KeyMaker move(code_version());
+  move.add("move").add(key_from(found->second));
+  keys["move " + std::to_string(last)] = add(move, recipe.moves[last]).key().text();
+}
+
 } // namespace pith

@@ -17,8 +17,9 @@ Camera Camera::framing(const Box& bounds, const Vec3d& direction, const Vec3d& u
   return Camera(view);
 }
 
-double Camera::half_height() const {
-  return view_.orthographic() ? 0.5 * view_.height : distance() * std::tan(0.5 * view_.vertical_angle);
+double mm_per_unit(const View& view, const Vec3d& x) {
+  if (view.orthographic()) return 0.5 * view.height;
+  return (x - view.eye).dot(view.forward()) * std::tan(0.5 * view.vertical_angle);
 }
 
 void Camera::orbit(double right, double up) {
@@ -31,14 +32,14 @@ void Camera::orbit(double right, double up) {
 }
 
 void Camera::pan(const Vec2d& from, const Vec2d& to) {
-  const Vec2d by = half_height() * (from - to);
+  const Vec2d by = mm_per_unit(view_, view_.target) * (from - to);
   const Vec3d shift = by.x() * view_.right() + by.y() * view_.upward();
   view_.eye += shift;
   view_.target += shift;
 }
 
 void Camera::zoom(double factor, const Vec2d& at) {
-  const double half = half_height();
+  const double half = mm_per_unit(view_, view_.target);
   const Vec3d toward = half * (1 - 1 / factor) * (at.x() * view_.right() + at.y() * view_.upward());
   view_.target += toward;
   view_.eye = view_.target + (view_.eye + toward - view_.target) / factor;
@@ -54,7 +55,7 @@ void Camera::set_orthographic(bool orthographic) {
   if (orthographic == view_.orthographic()) return;
   const double usual = View().vertical_angle;
   if (orthographic) {
-    view_.height = 2 * half_height();
+    view_.height = 2 * mm_per_unit(view_, view_.target);
     view_.vertical_angle = 0;
   } else {
     view_.eye = view_.target - view_.forward() * (0.5 * view_.height / std::tan(0.5 * usual));

@@ -6,6 +6,9 @@
 
 namespace pith {
 
+/// Millimetres that one screen unit spans at a world point's distance from the eye.
+double mm_per_unit(const View& view, const Vec3d& x);
+
 /// Turns about its target. All moves keep the up direction's sense, so that the picture never rolls over.
 class Camera {
 public:
@@ -26,8 +29,6 @@ public:
   std::string text() const;
 
 private:
-  double distance() const { return (view_.target - view_.eye).norm(); }
-  double half_height() const; ///< mm at the target's depth
   View view_;
 };
 

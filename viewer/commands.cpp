@@ -56,6 +56,19 @@ void fill(Workbench& bench) {
   bench.document().edit(std::move(recipe), "fill");
 }
 
+/// A command that changes the recipe; its label is the history's.
+Command edit(std::string name, std::string menu, std::string label, std::string tip, Document::Build build,
+             void (*change)(Recipe&)) {
+  return plain(
+      name, std::move(menu), std::move(label), "", std::move(tip),
+      [name, build, change](Workbench& bench) {
+        Recipe recipe = bench.document().recipe();
+        change(recipe);
+        bench.document().edit(std::move(recipe), name, build);
+      },
+      has_document);
+}
+
 std::vector<Command> all_commands() {
   std::vector<Command> list = {
       with_text("open", "File", "Open...", "Ctrl+O", "a recipe, a model or a surface",
@@ -93,22 +106,15 @@ std::vector<Command> all_commands() {
 
       plain("fill solids", "Solids", "Fill", "F", "fills with the exemplar and type that are set", fill,
             has_document),
-      plain(
-          "clear depth", "Solids", "Clear depth", "", "takes all depth constraints back",
-          [](Workbench& bench) {
-            Recipe recipe = bench.document().recipe();
-            for (Solid& solid : recipe.solids) solid.depth.clear();
-            bench.document().edit(std::move(recipe), "clear depth", Document::Build::later);
-          },
-          has_document),
-      plain(
-          "clear orientation", "Solids", "Clear orientation", "", "takes all orientation strokes back",
-          [](Workbench& bench) {
-            Recipe recipe = bench.document().recipe();
-            for (Solid& solid : recipe.solids) solid.orientation.clear();
-            bench.document().edit(std::move(recipe), "clear orientation", Document::Build::later);
-          },
-          has_document),
+      edit("clear depth", "Solids", "Clear depth", "takes all depth constraints back", Document::Build::later,
+           [](Recipe& recipe) {
+             for (Solid& solid : recipe.solids) solid.depth.clear();
+           }),
+      edit("clear orientation", "Solids", "Clear orientation", "takes all orientation strokes back",
+           Document::Build::later,
+           [](Recipe& recipe) {
+             for (Solid& solid : recipe.solids) solid.orientation.clear();
+           }),
 
       plain(
           "explode", "Pieces", "Explode", "E", "moves all pieces apart",
@@ -126,15 +132,11 @@ std::vector<Command> all_commands() {
             bench.document().move(step);
           },
           has_pieces),
-      plain(
-          "clear cuts", "Pieces", "Whole again", "", "takes all cuts and moves back",
-          [](Workbench& bench) {
-            Recipe recipe = bench.document().recipe();
-            recipe.cuts.clear();
-            recipe.moves.clear();
-            bench.document().edit(std::move(recipe), "whole again");
-          },
-          has_document),
+      edit("whole again", "Pieces", "Whole again", "takes all cuts and moves back", Document::Build::now,
+           [](Recipe& recipe) {
+             recipe.cuts.clear();
+             recipe.moves.clear();
+           }),
 
       plain("home", "View", "Home", "Home", "shows everything", [](Workbench& bench) { bench.home(); }),
       plain("orthographic", "View", "Orthographic", "O", "on and off",

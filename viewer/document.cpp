@@ -2,6 +2,7 @@
 
 #include "raytrace/scene_surface.h"
 #include "recipe/recipe_paths.h"
+#include "recipe/stage_codec.h"
 #include "volume/base/error.h"
 #include "volume/io/atomic_file.h"
 #include "volume/io/model_io.h"
@@ -30,9 +31,9 @@ std::map<std::string, std::string> root_keys(const std::map<std::string, std::st
 }
 
 std::uint64_t bytes_of(const Pieces& pieces) {
-  std::uint64_t bytes = 4 * pieces.label.size() + 52 * pieces.added.size();
-  for (const Piece& piece : pieces.piece) bytes += sizeof(CutTet) * piece.cut.size();
-  return bytes;
+  ArchiveCounter counter;
+  transfer(counter, pieces);
+  return counter.bytes;
 }
 
 } // namespace
@@ -54,6 +55,7 @@ void Document::begin(Recipe recipe, fs::path file, fs::path folder) {
   folder_ = std::move(folder);
   at_ = saved_at_ = 0;
   ++version_;
+  ++opened_;
   DocumentState first;
   first.label = "open";
   first.recipe = std::move(recipe);
@@ -134,50 +136,45 @@ Pieces Document::preview(const CutStep& step) const {
   return pieces;
 }
 
+/// The next state of the history, so far the same.
+DocumentState Document::after(std::string label) const {
+  require_complete(label.c_str());
+  DocumentState state = history_[at_];
+  state.label = std::move(label);
+  return state;
+}
+
 CutResult Document::cut(CutStep step) {
-  require_complete("cut");
-  const DocumentState& before = history_[at_];
-  const Root& root = before.root->root;
-  DocumentState after;
-  after.label = step.join.empty() ? "cut" : "join";
-  after.recipe = before.recipe;
-  append_cut(after.recipe, step, *before.pieces, root.model().mesh);
-  Pieces pieces = *before.pieces;
+  DocumentState state = after(step.join.empty() ? "cut" : "join");
+  const Root& root = state.root->root;
+  append_cut(state.recipe, std::move(step), *state.pieces, root.model().mesh);
+  Pieces pieces = *state.pieces;
   // As the recipe has it, placements included: what a build does.
-  CutResult result = apply_cut(pieces, {root.model(), root.locator(), folder_, &before.root->cutter},
-                               after.recipe.cuts.back(), "cut");
-  after.root = before.root;
-  after.pieces = std::make_shared<const Pieces>(std::move(pieces));
-  after.keys = before.keys;
-  if (!before.recipe.moves.empty())
-    std::erase_if(after.keys, [](const auto& k) { return k.first.starts_with("move "); });
-  add_last_cut(after.keys, after.recipe);
-  push(std::move(after));
+  CutResult result = apply_cut(pieces, {root.model(), root.locator(), folder_, &state.root->cutter},
+                               state.recipe.cuts.back(), "cut");
+  state.pieces = std::make_shared<const Pieces>(std::move(pieces));
+  add_last_cut(state.keys, state.recipe);
+  push(std::move(state));
   return result;
 }
 
 void Document::move(MoveStep step) {
-  require_complete("move");
-  const DocumentState& before = history_[at_];
-  const Root& root = before.root->root;
-  DocumentState after;
-  after.label = step.explode ? "explode" : step.drop ? "drop" : "move";
-  after.recipe = before.recipe;
-  after.recipe.moves.push_back(step);
-  Pieces pieces = *before.pieces;
+  DocumentState state = after(step.explode ? "explode" : step.drop ? "drop" : "move");
+  const Root& root = state.root->root;
+  Pieces pieces = *state.pieces;
   apply_move(pieces, root.model().mesh, root.locator(), step, "move");
-  after.root = before.root;
-  after.pieces = std::make_shared<const Pieces>(std::move(pieces));
-  after.keys = before.keys;
-  push(std::move(after));
+  state.pieces = std::make_shared<const Pieces>(std::move(pieces));
+  state.recipe.moves.push_back(std::move(step));
+  add_last_move(state.keys, state.recipe);
+  push(std::move(state));
 }
 
 void Document::edit(Recipe recipe, std::string label, Build build) {
   if (empty()) throw InvalidInput("document", "there is nothing open", "open a file first");
-  DocumentState after;
-  after.label = std::move(label);
-  after.recipe = std::move(recipe);
-  push(std::move(after));
+  DocumentState state;
+  state.label = std::move(label);
+  state.recipe = std::move(recipe);
+  push(std::move(state));
   if (build == Build::now) update();
 }
 

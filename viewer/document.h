@@ -57,6 +57,7 @@ public:
   /// What to show: the current state, or the last complete one. Null before anything was built.
   const DocumentState* shown() const { return shown_ ? &*shown_ : nullptr; }
   bool stale() const { return !empty() && !history_[at_].complete(); }
+  std::uint64_t opened() const { return opened_; }   ///< how often something was opened
   std::uint64_t version() const { return version_; } ///< another number whenever what is shown has changed
 
   /// Done at once. Errors: as apply_cut and apply_move; InvalidInput while the state is stale. The document is
@@ -91,6 +92,7 @@ private:
   void push(DocumentState state);
   void show(std::size_t at);
   void require_complete(const char* what) const;
+  DocumentState after(std::string label) const;
   void keep_recovery();
   void keep_budget();
 
@@ -101,7 +103,7 @@ private:
   std::vector<DocumentState> history_;
   std::optional<DocumentState> shown_;
   std::size_t at_ = 0, saved_at_ = 0;
-  std::uint64_t version_ = 0, serial_ = 0; ///< serial: tickets of builds
+  std::uint64_t version_ = 0, opened_ = 0, serial_ = 0; ///< serial: tickets of builds
   std::map<std::uint64_t, std::size_t> ticket_;
 };
 

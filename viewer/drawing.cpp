@@ -41,39 +41,57 @@ void require_no_error(const char* what) {
                                     error == GL_OUT_OF_MEMORY ? ", out of memory" : ""));
 }
 
-GLuint compiled(GLenum kind, const char* source) {
-  const GLuint shader = glCreateShader(kind);
-  glShaderSource(shader, 1, &source, nullptr);
-  glCompileShader(shader);
-  GLint done = 0;
-  glGetShaderiv(shader, GL_COMPILE_STATUS, &done);
-  if (!done) {
-    char log[1024] = "";
-    glGetShaderInfoLog(shader, sizeof log, nullptr, log);
-    glDeleteShader(shader);
-    throw SolverFailure(fmt::format("this OpenGL driver refuses pith's shader: {}", log));
-  }
-  return shader;
+template <class GetLog>
+[[noreturn]] void refuse_shader(GetLog get_log, GLuint name) {
+  char log[1024] = "";
+  get_log(name, sizeof log, nullptr, log);
+  throw SolverFailure(fmt::format("this OpenGL driver refuses pith's shader: {}", log));
 }
 
-GLuint linked(const char* vertex, const char* fragment) {
-  const GLuint program = glCreateProgram();
-  for (const auto& [kind, source] : {std::pair(GL_VERTEX_SHADER, vertex), std::pair(GL_FRAGMENT_SHADER, fragment)}) {
-    const GLuint shader = compiled(kind, source);
-    glAttachShader(program, shader);
-    glDeleteShader(shader);
+/// A vertex and a fragment shader. In use while values are set.
+class Program {
+public:
+  Program(const char* vertex, const char* fragment) : name_(glCreateProgram()) {
+    for (const auto& [kind, source] :
+         {std::pair(GL_VERTEX_SHADER, vertex), std::pair(GL_FRAGMENT_SHADER, fragment)}) {
+      const GLuint shader = glCreateShader(kind);
+      glAttachShader(name_, shader);
+      glDeleteShader(shader); // goes with the program
+      glShaderSource(shader, 1, &source, nullptr);
+      glCompileShader(shader);
+      GLint done = 0;
+      glGetShaderiv(shader, GL_COMPILE_STATUS, &done);
+      if (!done) refuse_shader([](auto... all) { glGetShaderInfoLog(all...); }, shader);
+    }
+    glLinkProgram(name_);
+    GLint done = 0;
+    glGetProgramiv(name_, GL_LINK_STATUS, &done);
+    if (!done) refuse_shader([](auto... all) { glGetProgramInfoLog(all...); }, name_);
   }
-  glLinkProgram(program);
-  GLint done = 0;
-  glGetProgramiv(program, GL_LINK_STATUS, &done);
-  if (!done) {
-    char log[1024] = "";
-    glGetProgramInfoLog(program, sizeof log, nullptr, log);
-    glDeleteProgram(program);
-    throw SolverFailure(fmt::format("this OpenGL driver refuses pith's shaders: {}", log));
+  ~Program() { glDeleteProgram(name_); }
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  void use() const { glUseProgram(name_); }
+  void set(const char* name, int number) const { glUniform1i(at(name), number); }
+  void set(const char* name, double number) const { glUniform1f(at(name), float(number)); }
+  void set(const char* name, double x, double y) const { glUniform2f(at(name), float(x), float(y)); }
+  void set(const char* name, const Vec3d& v) const {
+    glUniform3f(at(name), float(v.x()), float(v.y()), float(v.z()));
   }
-  return program;
-}
+  void set(const char* name, const Mat3d& m) const {
+    const Eigen::Matrix3f f = m.cast<float>();
+    glUniformMatrix3fv(at(name), 1, GL_FALSE, f.data());
+  }
+  void set(const char* name, const Eigen::Matrix4d& m) const {
+    const Eigen::Matrix4f f = m.cast<float>();
+    glUniformMatrix4fv(at(name), 1, GL_FALSE, f.data());
+  }
+
+private:
+  GLint at(const char* name) const { return glGetUniformLocation(name_, name); }
+  GLuint name_;
+};
 
 struct BufferTexture {
   Buffer buffer;
@@ -142,7 +160,8 @@ Eigen::Matrix4d clip_matrix(const View& view, double aspect, const DepthRange& r
 }
 
 struct Drawing::Parts {
-  GLuint program = 0, depth_program = 0;
+  Program program{surface_vertex_shader, surface_fragment_shader};
+  Program depth_program{surface_vertex_shader, depth_fragment_shader};
   Texture depth; ///< of the view, for the occlusion
   Framebuffer depth_frame;
   std::array<int, 2> depth_size{0, 0};
@@ -152,23 +171,6 @@ struct Drawing::Parts {
   Buffer vertices;
   std::vector<DrawnPiece> piece;
   std::vector<Box> bounds; ///< of each piece, at rest
-
-  ~Parts() {
-    if (program) glDeleteProgram(program);
-    if (depth_program) glDeleteProgram(depth_program);
-  }
-  GLint at(const char* name) const {
-    GLint in_use = 0;
-    glGetIntegerv(GL_CURRENT_PROGRAM, &in_use);
-    return glGetUniformLocation(static_cast<GLuint>(in_use), name);
-  }
-  void set(const char* name, const Vec3d& v) const {
-    glUniform3f(at(name), float(v.x()), float(v.y()), float(v.z()));
-  }
-  void set(const char* name, const Eigen::Matrix4d& m) const {
-    const Eigen::Matrix4f f = m.cast<float>();
-    glUniformMatrix4fv(at(name), 1, GL_FALSE, f.data());
-  }
 
   /// Depths alone, of half as many pixels each way; into `depth`.
   void draw_depth(const Eigen::Matrix4d& to_clip, int width, int height) {
@@ -194,19 +196,19 @@ struct Drawing::Parts {
     glBindFramebuffer(GL_FRAMEBUFFER, depth_frame);
     glViewport(0, 0, size[0], size[1]);
     glClear(GL_DEPTH_BUFFER_BIT);
-    glUseProgram(depth_program);
-    set("to_clip", to_clip);
-    glBindVertexArray(array);
-    draw_pieces(0xffffffffu);
+    depth_program.use();
+    depth_program.set("to_clip", to_clip);
+    draw_pieces(depth_program);
     glBindFramebuffer(GL_FRAMEBUFFER, before);
   }
 
-  void draw_pieces(std::uint32_t highlighted) const {
+  void draw_pieces(const Program& in_use) const {
+    glBindVertexArray(array);
     for (const DrawnPiece& one : piece) {
-      set("to_world", matrix_of(one.placement));
-      glUniform1f(at("highlight"), one.piece == highlighted ? 0.12f : 0.0f);
+      in_use.set("to_world", matrix_of(one.placement));
       glDrawArrays(GL_TRIANGLES, static_cast<GLint>(one.begin), static_cast<GLsizei>(one.end - one.begin));
     }
+    glBindVertexArray(0);
   }
 
   Box world_bounds() const {
@@ -222,12 +224,11 @@ struct Drawing::Parts {
   }
 };
 
-Drawing::Drawing() : parts_(std::make_unique<Parts>()) {
+Drawing::Drawing() {
   if (epoxy_gl_version() < 33 || !epoxy_is_desktop_gl())
     throw SolverFailure(fmt::format("pith draws with OpenGL 3.3 or later; this is {}",
                                     reinterpret_cast<const char*>(glGetString(GL_VERSION))));
-  parts_->program = linked(surface_vertex_shader, surface_fragment_shader);
-  parts_->depth_program = linked(surface_vertex_shader, depth_fragment_shader);
+  parts_ = std::make_unique<Parts>();
   set_material({});
   set_surface({});
 }
@@ -303,37 +304,34 @@ void Drawing::draw(const View& view, int width, int height, const DrawOptions& o
   else
     glClearColor(0.93f, 0.93f, 0.92f, 1);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  glUseProgram(p.program);
+  p.program.use();
   int unit = 0;
-  for (const auto& [name, buffer] :
-       {std::pair("table", &p.table), std::pair("texels", &p.texels), std::pair("alphas", &p.alphas)}) {
+  const auto bind = [&](const char* name, GLenum kind, GLuint texture) {
     glActiveTexture(GL_TEXTURE0 + unit);
-    glBindTexture(GL_TEXTURE_BUFFER, buffer->texture);
-    glUniform1i(p.at(name), unit++);
-  }
-  glActiveTexture(GL_TEXTURE0 + unit);
-  glBindTexture(GL_TEXTURE_2D, occluded ? p.depth : 0);
-  glUniform1i(p.at("depths"), unit);
-  glUniform1i(p.at("occluded"), occluded);
-  glUniform2f(p.at("pixels"), float(width), float(height));
-  glUniform2f(p.at("range"), float(range.near), float(range.far));
+    glBindTexture(kind, texture);
+    p.program.set(name, unit++);
+  };
+  bind("table", GL_TEXTURE_BUFFER, p.table.texture);
+  bind("texels", GL_TEXTURE_BUFFER, p.texels.texture);
+  bind("alphas", GL_TEXTURE_BUFFER, p.alphas.texture);
+  bind("depths", GL_TEXTURE_2D, occluded ? GLuint(p.depth) : 0);
   const double seen = view.orthographic() ? view.height : 2 * std::tan(0.5 * view.vertical_angle);
-  glUniform1f(p.at("pixel_mm"), float(seen / height));
-  const Eigen::Matrix3f axes = camera_axes(view).cast<float>();
-  glUniformMatrix3fv(p.at("camera"), 1, GL_FALSE, axes.data());
-  glUniform1f(p.at("reach"), float(0.12 * bounds.diagonal()));
-  p.set("to_clip", to_clip);
-  glUniform1i(p.at("layers"), static_cast<int>(p.layers));
-  glUniform1i(p.at("filtered"), options.filtered);
-  glUniform1i(p.at("lit"), options.lit);
-  glUniform1i(p.at("orthographic"), view.orthographic());
-  p.set("eye", view.orthographic() ? Vec3d(-view.forward()) : view.eye);
-  p.set("up", view.upward());
-  p.set("key_light", (0.75 * view.upward() - 0.5 * view.right() - 0.65 * view.forward()).normalized());
-  p.set("uncovered", options.uncovered);
-  glBindVertexArray(p.array);
-  p.draw_pieces(options.highlighted);
-  glBindVertexArray(0);
+  p.program.set("occluded", int(occluded));
+  p.program.set("pixels", double(width), double(height));
+  p.program.set("range", range.near, range.far);
+  p.program.set("pixel_mm", seen / height);
+  p.program.set("camera", camera_axes(view));
+  p.program.set("reach", 0.12 * bounds.diagonal());
+  p.program.set("to_clip", to_clip);
+  p.program.set("layers", static_cast<int>(p.layers));
+  p.program.set("filtered", int(options.filtered));
+  p.program.set("lit", int(options.lit));
+  p.program.set("orthographic", int(view.orthographic()));
+  p.program.set("eye", view.orthographic() ? Vec3d(-view.forward()) : view.eye);
+  p.program.set("up", view.upward());
+  p.program.set("key_light", Vec3d((0.75 * view.upward() - 0.5 * view.right() - 0.65 * view.forward()).normalized()));
+  p.program.set("uncovered", options.uncovered);
+  p.draw_pieces(p.program);
   glActiveTexture(GL_TEXTURE0);
   require_no_error("draw");
 }

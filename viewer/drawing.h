@@ -17,7 +17,6 @@ struct DrawOptions {
   bool occlusion = true;    ///< crevices are darker; only where lit
   bool transparent = false; ///< no background
   Vec3d uncovered{0.5, 0.5, 0.5};
-  std::uint32_t highlighted = 0xffffffffu; ///< a piece
 };
 
 /// Everything that GL holds for one window or picture. Make it, use it and let it go with the same context current.

@@ -46,7 +46,6 @@ uniform bool orthographic;
 uniform vec3 key_light;  // unit, towards it
 uniform vec3 up;
 uniform vec3 uncovered;  // linear, where nothing covers
-uniform float highlight; // of the piece under the mouse
 uniform bool occluded;   // less of the sky is seen from crevices
 uniform sampler2D depths; // of the same view
 uniform vec2 pixels;     // of the picture
@@ -398,7 +397,6 @@ void main() {
     float shine = pow(max(dot(n, normalize(key_light + to_eye)), 0.0), 48.0);
     color = color * light + 0.06 * shine;
   }
-  color = mix(color, vec3(1.0, 0.75, 0.25), highlight);
   pixel = vec4(encoded(color), 1.0);
 }
 )";

@@ -89,8 +89,7 @@ public:
       plane.offset = plane.normal.dot(a.origin);
     } else {
       plane.normal = Vec3d::Unit(bench.settings().plane_axis);
-      const double depth = (start_ - view.eye).dot(view.forward());
-      const double half = view.orthographic() ? 0.5 * view.height : depth * std::tan(0.5 * view.vertical_angle);
+      const double half = mm_per_unit(view, start_);
       const Vec2d seen(plane.normal.dot(view.right()), plane.normal.dot(view.upward()));
       const double length = std::max(seen.norm(), 0.1);
       plane.offset = plane.normal.dot(start_) + half * (to_ - from_).dot(seen) / (length * length);

@@ -32,8 +32,7 @@ public:
       placement.rotation = turn * placement.rotation;
       placement.translation = turn * (placement.translation - grip_->point) + grip_->point;
     } else {
-      const double depth = (grip_->point - view.eye).dot(view.forward());
-      const double half = view.orthographic() ? 0.5 * view.height : depth * std::tan(0.5 * view.vertical_angle);
+      const double half = mm_per_unit(view, grip_->point);
       grip_->step.translate = half * (by.x() * view.right() + by.y() * view.upward());
       placement.translation += grip_->step.translate;
     }

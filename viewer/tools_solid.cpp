@@ -167,10 +167,7 @@ protected:
   virtual double turn() const { return 0; } ///< radians, by the wheel
   /// mm from the place to the mouse, at the place's distance.
   double reach(const Workbench& bench) const {
-    const View& view = bench.view();
-    const double depth = (there_->world - view.eye).dot(view.forward());
-    const double half = view.orthographic() ? 0.5 * view.height : depth * std::tan(0.5 * view.vertical_angle);
-    return half * (to_ - from_).norm();
+    return mm_per_unit(bench.view(), there_->world) * (to_ - from_).norm();
   }
   std::optional<SurfaceHit> there_;
   Vec2d from_{0, 0}, to_{0, 0};

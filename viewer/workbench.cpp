@@ -143,25 +143,27 @@ const DrawnSurface& Workbench::surface() {
   return surface_;
 }
 
+void Workbench::surface_changed() {
+  surface_valid_ = placed_ = false;
+  ++surface_version_;
+}
+
 /// Follows the document and the settings.
 void Workbench::refresh() {
-  const ReadyRoot* ready = document_.shown() ? document_.shown()->root.get() : nullptr;
+  const std::shared_ptr<const ReadyRoot> ready = document_.shown() ? document_.shown()->root : nullptr;
   if (shown_version_ != document_.version() || shown_relief_ != settings_.relief) {
-    if (document_.position() == 0 && !document_.shown()) framed_ = false; // another document
     shown_version_ = document_.version();
     shown_relief_ = settings_.relief;
     preview_.reset();
-    surface_valid_ = false;
-    ++surface_version_;
+    surface_changed();
   }
   if (ready != shown_root_) {
     shown_root_ = ready;
-    surface_valid_ = false;
-    ++surface_version_;
+    surface_changed();
     ++material_version_;
   }
-  if (ready && !framed_) {
-    framed_ = true;
+  if (ready && framed_ != document_.opened()) {
+    framed_ = document_.opened();
     settings_.spread = std::round(8 * bounds_of(ready->root.model().mesh).diagonal()) / 100; // halves fall apart
     if (const auto& view = document_.recipe().view)
       camera_ = Camera(*view);
@@ -176,15 +178,13 @@ void Workbench::preview(const CutStep& step) {
   } catch (const InvalidInput&) { // misses, so far
     preview_.reset();
   }
-  surface_valid_ = false;
-  ++surface_version_;
+  surface_changed();
 }
 
 void Workbench::end_preview() {
-  if (!preview_) return;
+  if (!preview_ && !placed_) return;
   preview_.reset();
-  surface_valid_ = false;
-  ++surface_version_;
+  surface_changed();
 }
 
 CutStep Workbench::with_settings(CutStep step, const Vec2d& start) {
@@ -210,6 +210,7 @@ void Workbench::commit(CutStep step, const Vec2d& start) {
 
 void Workbench::show_placement(std::uint32_t piece, const Rigid& placement) {
   surface();
+  placed_ = true;
   for (DrawnPiece& drawn : surface_.piece)
     if (drawn.piece == piece) drawn.placement = placement;
 }

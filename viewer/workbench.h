@@ -83,7 +83,7 @@ public:
 
   // For tools.
   void preview(const CutStep& step); ///< shows what the cut would leave; nothing where it fails
-  void end_preview();
+  void end_preview();                ///< and of placements
   /// Commits with the settings' keep, spread (of open cuts) and scope; `start`: where the gesture began.
   void commit(CutStep step, const Vec2d& start);
   CutStep with_settings(CutStep step, const Vec2d& start);
@@ -92,6 +92,7 @@ public:
 private:
   void handle_mouse(const Event& event);
   void refresh();
+  void surface_changed();
 
   Settings settings_;
   std::vector<Setting> setting_list_;
@@ -99,15 +100,15 @@ private:
   Camera camera_;
   std::unique_ptr<Tool> tool_;
   std::string tool_name_, message_;
-  bool error_ = false, framed_ = false;
+  bool error_ = false;
   std::optional<Button> held_;
   bool panning_ = false;
   Vec2d last_{0, 0};
-  std::uint64_t shown_version_ = 0, material_version_ = 0, surface_version_ = 0;
-  const ReadyRoot* shown_root_ = nullptr;
+  std::uint64_t shown_version_ = 0, framed_ = 0, material_version_ = 0, surface_version_ = 0;
+  std::shared_ptr<const ReadyRoot> shown_root_; ///< held, so that no other can take its address
   std::optional<Pieces> preview_;
   DrawnSurface surface_;
-  bool surface_valid_ = false;
+  bool surface_valid_ = false, placed_ = false; ///< placed: pieces are shown where the document has them not
   double shown_relief_ = 1;
 };
 

@@ -77,7 +77,7 @@ TEST_F(View, AFullDiskLosesNothing) {
   ASSERT_EQ(program.run({"view", kiwi, "--replay", "s.json"}).code, 0);
   const std::string before = testing::content_of(program.folder / "copy.pith");
   program.most_file_bytes = 20000;
-  write_session(R"({"do": "clear cuts"}, {"wait": true}, {"do": "save as", "with": "copy.pith"})");
+  write_session(R"({"do": "whole again"}, {"wait": true}, {"do": "save as", "with": "copy.pith"})");
   expect_refused({"view", kiwi, "--replay", "s.json"}, "copy.pith");
   EXPECT_EQ(testing::content_of(program.folder / "copy.pith"), before);
   expect_refused({"view", kiwi, "--screenshot", "end.png", "--size", "1600x1200"}, "end.png");

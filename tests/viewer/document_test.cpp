@@ -77,6 +77,24 @@ TEST_F(Documents, UndoAllRedoAllIsTheModelOfABuild) {
   EXPECT_EQ(file_content(scratch.path() / "built.pith"), last);
 }
 
+TEST_F(Documents, AfterMovesTheKeysAreThoseOfABuild) {
+  Document document(options);
+  document.open(recipes / "kiwi.json");
+  ASSERT_EQ(document.wait(), "");
+  MoveStep explode, drop;
+  explode.explode = 0.5;
+  drop.drop = -3;
+  document.move(explode);
+  document.cut(plane({0.1, 1, 0}, 0));
+  document.move(drop);
+  document.move(explode);
+  Builder builder;
+  const BuildResult built = builder.build(document.recipe(), document.folder());
+  EXPECT_EQ(document.shown()->keys, built.keys());
+  write_model(scratch.path() / "built.pith", built.model, built.pieces, recipe_text(document.recipe()), built.keys());
+  EXPECT_TRUE(file_content(scratch.path() / "built.pith") == bytes_of(*document.shown(), scratch.path()));
+}
+
 TEST_F(Documents, AFailedEditChangesNothing) {
   Document document(options);
   document.open(recipes / "kiwi.json");

@@ -1,6 +1,6 @@
 // Recorded sessions replayed: every tool, menu item and setting; what they leave behind.
 #include "tests/support/scratch.h"
-#include "viewer/screen.h"
+#include "viewer/replay.h"
 #include "volume/base/error.h"
 #include "volume/io/image_io.h"
 
@@ -213,6 +213,45 @@ TEST(Workbenches, WhatFailsBecomesAMessageAndTheWorkGoesOn) {
   bench.handle({.kind = Event::Kind::wait});
   EXPECT_FALSE(bench.message_is_error()) << bench.message();
   EXPECT_GE(bench.pieces()->piece.size(), 1u);
+}
+
+TEST(Workbenches, AnotherDocumentIsFramedAfresh) {
+  testing::ScratchFolder scratch;
+  Workbench bench;
+  const auto does = [&](const char* name, const std::string& text = {}) {
+    bench.handle({.kind = Event::Kind::command, .name = name, .text = text});
+    bench.handle({.kind = Event::Kind::wait});
+    ASSERT_FALSE(bench.message_is_error()) << bench.message();
+  };
+  const std::string model = (scratch / "kiwi.pith").string();
+  does("open", (source / "data/recipes/table1/kiwi.json").string());
+  does("save as", model);
+  const Vec3d eye = bench.view().eye;
+  const double spread = bench.settings().spread;
+  const std::uint64_t material = bench.material_version();
+  bench.handle({.kind = Event::Kind::wheel, .at = {0.3, 0.2}, .amount = 9});
+  bench.handle({.kind = Event::Kind::set, .name = "spread", .text = "1"});
+  EXPECT_NE(bench.view().eye, eye);
+  does("open", model); // there at once, without a build
+  EXPECT_EQ(bench.view().eye, eye);
+  EXPECT_EQ(bench.settings().spread, spread);
+  EXPECT_GT(bench.material_version(), material);
+}
+
+TEST(Workbenches, AMoveThatIsBrokenOffMovesNothing) {
+  Workbench bench;
+  bench.handle(
+      {.kind = Event::Kind::command, .name = "open", .text = (source / "data/recipes/table1/kiwi.json").string()});
+  bench.handle({.kind = Event::Kind::wait});
+  bench.handle({.kind = Event::Kind::command, .name = "whole again"});
+  bench.handle({.kind = Event::Kind::wait});
+  bench.handle({.kind = Event::Kind::command, .name = "home"});
+  bench.handle({.kind = Event::Kind::command, .name = "tool move"});
+  bench.handle({.kind = Event::Kind::press, .at = {0, 0}});
+  bench.handle({.kind = Event::Kind::drag, .at = {0.3, 0.1}});
+  EXPECT_GT(bench.surface().piece.at(0).placement.translation.norm(), 1);
+  bench.handle({.kind = Event::Kind::command, .name = "tool navigate"});
+  EXPECT_EQ(bench.surface().piece.at(0).placement.translation.norm(), 0);
 }
 
 TEST(Workbenches, AToolChosenInTheMiddleOfAGestureEndsIt) {
